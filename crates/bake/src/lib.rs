@@ -1,0 +1,1 @@
+//! Precomputes how a scene carries light.

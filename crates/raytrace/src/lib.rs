@@ -1,0 +1,1 @@
+//! Occlusion and closest hits in a triangle soup.

@@ -1,0 +1,1 @@
+//! An independent path tracer: the ground truth.

@@ -1,0 +1,1 @@
+//! Evaluates a .prt file on the CPU.

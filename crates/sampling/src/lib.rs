@@ -1,0 +1,1 @@
+//! Seeded sequences, warps with densities, discrete sampling, error estimates.

@@ -1,0 +1,1 @@
+//! Statistics, image distances and data discovery for tests.

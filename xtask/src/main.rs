@@ -1,0 +1,2 @@
+//! Runs commands in order.
+fn main() {}
