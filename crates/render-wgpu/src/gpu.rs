@@ -1,0 +1,129 @@
+//! The graphics device: found, opened, and asked what it can hold.
+
+use crate::Error;
+
+/// Which adapters may be taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Driver {
+    /// The fastest that the machine has; a software driver where there is no GPU.
+    #[default]
+    Any,
+    /// Only a software driver: the same picture on every machine, for tests.
+    Software,
+}
+
+/// An open device without any window. Cheap to clone: clones share the device.
+#[derive(Debug, Clone)]
+pub struct Gpu {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    pub(crate) limits: wgpu::Limits,
+    /// Blending into 32-bit float pictures; without it blended scenes are drawn in 16-bit floats.
+    pub(crate) blends_float32: bool,
+    description: String,
+}
+
+impl Gpu {
+    /// Opens a device through Vulkan, Metal, DirectX 12 or OpenGL, whichever the machine has.
+    ///
+    /// The variable `WGPU_BACKEND` (`vulkan`, `gl`, ...) narrows the choice.
+    ///
+    /// # Errors
+    /// [`Error::NoAdapter`] where no driver is installed, [`Error::NoDevice`] where it fails to start.
+    pub fn new(driver: Driver) -> Result<Self, Error> {
+        let instance =
+            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            force_fallback_adapter: driver == Driver::Software,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|error| {
+            Error::NoAdapter {
+                reason: one_line(&error.to_string()),
+            }
+        })?;
+        Self::open(&adapter)
+    }
+
+    fn open(adapter: &wgpu::Adapter) -> Result<Self, Error> {
+        let info = adapter.get_info();
+        let features = adapter.features() & wgpu::Features::FLOAT32_BLENDABLE;
+        // What the adapter has, not the portable minimum: large scenes should fit where they can.
+        let limits = adapter.limits();
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("relume"),
+            required_features: features,
+            required_limits: limits.clone(),
+            memory_hints: wgpu::MemoryHints::Performance,
+            ..Default::default()
+        };
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
+                Error::NoDevice {
+                    adapter: info.name.clone(),
+                    reason: one_line(&error.to_string()),
+                }
+            })?;
+        let description = format!("{} ({})", info.name, info.backend);
+        let blends_float32 = features.contains(wgpu::Features::FLOAT32_BLENDABLE);
+        Ok(Self {
+            device,
+            queue,
+            limits,
+            blends_float32,
+            description,
+        })
+    }
+
+    /// Name of the adapter and of the interface, for people.
+    #[must_use]
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// Runs `work` and turns what the driver complains about into an [`Error::Gpu`].
+    pub(crate) fn guarded<T>(
+        &self,
+        doing: &'static str,
+        work: impl FnOnce() -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let filters = [
+            wgpu::ErrorFilter::Validation,
+            wgpu::ErrorFilter::OutOfMemory,
+            wgpu::ErrorFilter::Internal,
+        ];
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
+        let result = work();
+        let complaints = scopes
+            .into_iter()
+            .rev()
+            .map(|scope| pollster::block_on(scope.pop()));
+        // All scopes are popped before any complaint is looked at.
+        let complaint = complaints.collect::<Vec<_>>().into_iter().flatten().next();
+        let value = result?;
+        match complaint {
+            Some(error) => Err(Error::Gpu {
+                doing,
+                reason: one_line(&error.to_string()),
+            }),
+            None => Ok(value),
+        }
+    }
+
+    /// Waits until the device has done all that it was given.
+    pub(crate) fn wait(&self) -> Result<(), Error> {
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map(drop)
+            .map_err(|error| Error::Gpu {
+                doing: "finishing a frame",
+                reason: one_line(&error.to_string()),
+            })
+    }
+}
+
+/// Error texts of wgpu run over many lines; a sentence has one.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
