@@ -1,0 +1,145 @@
+//! How large is the error of what was sampled: the doubling rule and independent replicates.
+
+/// The doubling rule: take twice the samples until the last doubling changed little enough.
+///
+/// With Owen-scrambled Sobol points `|Q_N - Q_(N/2)|` overestimates the error of `Q_N` by about 1.4 (root mean square), and
+/// costs no accuracy, as every sample counts in the result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubling {
+    /// Samples before the first look; a power of two.
+    pub first: u32,
+    /// No look goes beyond this many samples.
+    pub last: u32,
+    /// Allowed L2 norm of the change, in the unit of the estimates.
+    pub tolerance: f64,
+    /// Looks in a row that must be within the tolerance: 1, or 2 where the largest error counts too.
+    pub passes: u32,
+}
+
+/// What to do after a look.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict {
+    /// Go on to this many samples in total.
+    Continue {
+        /// Twice the present count, or the limit.
+        count: u32,
+    },
+    /// Stop: the tolerance is met.
+    Reached {
+        /// The last change, an upper estimate of the error.
+        error: f64,
+    },
+    /// Stop: the limit is spent.
+    Exhausted {
+        /// The last change; infinite after a single look.
+        error: f64,
+    },
+}
+
+/// The state of one receiver under a [`Doubling`] rule.
+#[derive(Debug, Clone)]
+pub struct Progress {
+    previous: Vec<f64>,
+    passed: u32,
+}
+
+impl Doubling {
+    /// State before the first look.
+    #[must_use]
+    pub fn start(&self) -> Progress {
+        Progress {
+            previous: Vec::new(),
+            passed: 0,
+        }
+    }
+
+    /// Judges the estimate after `count` samples; call with `first`, then with each count asked for.
+    pub fn look(&self, progress: &mut Progress, count: u32, estimate: &[f64]) -> Verdict {
+        let error = if progress.previous.is_empty() {
+            f64::INFINITY
+        } else {
+            l2_distance(estimate, &progress.previous)
+        };
+        progress.previous.clear();
+        progress.previous.extend_from_slice(estimate);
+        progress.passed = if error <= self.tolerance {
+            progress.passed + 1
+        } else {
+            0
+        };
+        if progress.passed >= self.passes.max(1) {
+            Verdict::Reached { error }
+        } else if count >= self.last {
+            Verdict::Exhausted { error }
+        } else {
+            Verdict::Continue {
+                count: count.saturating_mul(2).min(self.last),
+            }
+        }
+    }
+}
+
+/// L2 norm of the difference of two vectors of one length.
+#[must_use]
+pub fn l2_distance(a: &[f64], b: &[f64]) -> f64 {
+    debug_assert_eq!(a.len(), b.len(), "vectors of one estimate");
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b) * (a - b))
+        .sum::<f64>()
+        .sqrt()
+}
+
+/// Independent estimates of one vector (other seeds, same count): their mean with an unbiased error.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Replicates {
+    n: u32,
+    mean: Vec<f64>,
+    /// Sums of squared deviations from the mean.
+    squares: Vec<f64>,
+}
+
+impl Replicates {
+    /// Adds one estimate; all have the length of the first (Welford's update: no cancellation).
+    pub fn add(&mut self, estimate: &[f64]) {
+        if self.n == 0 {
+            self.mean = vec![0.0; estimate.len()];
+            self.squares = vec![0.0; estimate.len()];
+        }
+        debug_assert_eq!(estimate.len(), self.mean.len(), "replicates of one vector");
+        self.n += 1;
+        for ((mean, square), &value) in self.mean.iter_mut().zip(&mut self.squares).zip(estimate) {
+            let before = value - *mean;
+            *mean += before / f64::from(self.n);
+            *square += before * (value - *mean);
+        }
+    }
+
+    /// Mean of the estimates.
+    #[must_use]
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    /// Standard error of each entry of the mean; infinite below two replicates.
+    #[must_use]
+    pub fn std_error(&self) -> Vec<f64> {
+        self.squares
+            .iter()
+            .map(|s| self.variance_of_mean(*s).sqrt())
+            .collect()
+    }
+
+    /// Expected L2 error of the mean; infinite below two replicates.
+    #[must_use]
+    pub fn l2_error(&self) -> f64 {
+        self.variance_of_mean(self.squares.iter().sum()).sqrt()
+    }
+
+    fn variance_of_mean(&self, squares: f64) -> f64 {
+        if self.n < 2 {
+            return f64::INFINITY;
+        }
+        squares / (f64::from(self.n) * f64::from(self.n - 1))
+    }
+}
