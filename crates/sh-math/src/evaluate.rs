@@ -1,0 +1,33 @@
+//! All basis functions at one direction.
+
+use crate::{Bands, recurrence, straight};
+use glam::{DVec3, Vec3};
+
+/// Writes the basis functions at the unit vector `direction` (world axes) into `out[0..bands^2]`.
+///
+/// Straight-line code to 8 bands, the recurrence above. Values are those of the polynomial: a vector that is `d` too long
+/// errs by about `l (l + 1) / 2 * d`.
+///
+/// # Panics
+/// When `out` is shorter than `bands.coefficients()`.
+#[inline]
+pub fn evaluate(bands: Bands, direction: Vec3, out: &mut [f32]) {
+    let out = &mut out[..bands.coefficients()];
+    let direction = direction.to_array();
+    if !straight::evaluate_into(bands.count(), direction, |i, value| out[i] = value) {
+        recurrence::evaluate(bands.count(), direction, out);
+    }
+}
+
+/// [`evaluate`] in f64.
+///
+/// # Panics
+/// When `out` is shorter than `bands.coefficients()`.
+#[inline]
+pub fn evaluate_f64(bands: Bands, direction: DVec3, out: &mut [f64]) {
+    let out = &mut out[..bands.coefficients()];
+    let direction = direction.to_array();
+    if !straight::evaluate_into(bands.count(), direction, |i, value| out[i] = value) {
+        recurrence::evaluate(bands.count(), direction, out);
+    }
+}
