@@ -1,7 +1,26 @@
 //! The `.prt` file: data model, header, chunks, checksums, exports.
+//!
+//! A `.prt` is self-contained: geometry as baked, materials, textures, transfer, the plan, the settings, the achieved
+//! error and the id of the spherical harmonics convention. `docs/format.md` describes the file byte by byte.
 
+mod array;
+mod camera;
+mod error;
+pub mod export;
+mod header;
+mod inspect;
 mod model;
+mod read;
 mod record;
+mod replace;
+mod table;
+mod validate;
+mod write;
 
+pub use error::Error;
+pub use header::{Header, TextureHeader};
+pub use inspect::{Inspection, check, inspect};
 pub use model::{AlphaMode, Camera, Geometry, Material, Mesh, Prt, Texture, TextureSlot, Transfer, Wrap};
-pub use record::{Achieved, Bounces, Effect, Effects, PlanRow, Plan, Quality, RepairCounts, Sampler, Settings};
+pub use record::{Achieved, Bounces, Effect, Effects, Plan, PlanRow, Quality, RepairCounts, Sampler, Settings};
+pub use replace::replace;
+pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};

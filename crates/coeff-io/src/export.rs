@@ -1,0 +1,67 @@
+//! Coefficients for other programs: `.npy` and JSON.
+
+use crate::{Error, Prt, replace};
+use npyz::WriterBuilder;
+use sh_math::Rgb;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Writes `positions.npy` `[R, 3]`, `normals.npy` `[R, 3]`, `transfer.npy` `[R, n*n, C]` and, where C = 1,
+/// `albedo.npy` `[R, 3]` into `folder`, which is made if need be; all of little-endian f32.
+///
+/// Where C = 3 the albedo is multiplied into the transfer, so that `transfer * light` is outgoing radiance; where
+/// C = 1 outgoing radiance is `albedo * (transfer * light)`. Each file is written beside and renamed.
+///
+/// # Errors
+/// `Io`.
+pub fn npy(prt: &Prt, folder: &Path) -> Result<(), Error> {
+    std::fs::create_dir_all(folder)?;
+    let rows = prt.geometry.positions.len() as u64;
+    let transfer = &prt.transfer;
+    let (coefficients, channels) = (u64::from(transfer.bands).pow(2), u64::from(transfer.channels));
+    array(&folder.join("positions.npy"), &[rows, 3], prt.geometry.positions.as_flattened().iter().copied())?;
+    array(&folder.join("normals.npy"), &[rows, 3], prt.geometry.normals.as_flattened().iter().copied())?;
+    let path = folder.join("transfer.npy");
+    let shape = [rows, coefficients, channels];
+    if channels == 1 {
+        array(&path, &shape, transfer.values.iter().copied())?;
+        return array(&folder.join("albedo.npy"), &[rows, 3], transfer.albedo.as_flattened().iter().copied());
+    }
+    // An albedo file of an earlier export would be taken for a factor that is still missing.
+    match std::fs::remove_file(folder.join("albedo.npy")) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e.into()),
+        _ => {}
+    }
+    let receivers = transfer.values.chunks_exact((coefficients * channels) as usize).zip(&transfer.albedo);
+    array(&path, &shape, receivers.flat_map(|(row, albedo)| row.iter().zip(albedo.iter().cycle()).map(|(t, a)| t * a)))
+}
+
+/// Writes light coefficients as one array `[n*n, 3]` of little-endian f32.
+///
+/// # Errors
+/// `Io`.
+pub fn light_npy(light: &Rgb, path: &Path) -> Result<(), Error> {
+    array(path, &[light.values.len() as u64, 3], light.values.as_flattened().iter().copied())
+}
+
+/// Writes light coefficients as JSON: `convention`, `bands` and `coefficients` `[n*n][3]`.
+///
+/// # Errors
+/// `Io`.
+pub fn light_json(light: &Rgb, path: &Path) -> Result<(), Error> {
+    let value = serde_json::json!({
+        "convention": sh_math::CONVENTION,
+        "bands": light.bands.count(),
+        "coefficients": light.values,
+    });
+    Ok(replace(path, |file| writeln!(file, "{value:#}"))?)
+}
+
+fn array(path: &Path, shape: &[u64], values: impl Iterator<Item = f32>) -> Result<(), Error> {
+    let dtype = npyz::DType::Plain("<f4".parse().map_err(io::Error::other)?);
+    Ok(replace(path, |file| {
+        let mut writer = npyz::WriteOptions::new().dtype(dtype).shape(shape).writer(file).begin_nd()?;
+        writer.extend(values)?;
+        writer.finish()
+    })?)
+}

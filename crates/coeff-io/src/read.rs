@@ -1,0 +1,124 @@
+//! Bytes become a [`Prt`].
+
+use crate::table::{self, Chunk, Kind};
+use crate::{Error, Geometry, Header, Prt, Texture, Transfer, array, validate};
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+impl Prt {
+    /// Reads a file and checks all of it: checksums, lengths, indices, numbers.
+    ///
+    /// Memory is bounded by a small multiple of the length of the file, whatever the file says.
+    ///
+    /// # Errors
+    /// `Unsupported` for another version or convention, `Invalid` for damage or contradiction, `Io`.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let (file, length) = open(path)?;
+        read_from(BufReader::new(file), length)
+    }
+
+    /// Reads a file that is in memory.
+    ///
+    /// # Errors
+    /// As [`Prt::read`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
+        read_from(bytes, bytes.len() as u64)
+    }
+}
+
+/// Opens a regular file and tells its length: lengths inside the file are measured against it.
+pub(crate) fn open(path: &Path) -> Result<(File, u64), Error> {
+    let file = File::open(path)?;
+    let metadata = file.metadata()?;
+    if !metadata.is_file() {
+        return Err(Error::Unsupported("this is no regular file, so its length is not known beforehand".into()));
+    }
+    Ok((file, metadata.len()))
+}
+
+/// Reads prelude, table and header chunk.
+pub(crate) fn read_header(from: &mut impl Read, file_length: u64) -> Result<(Vec<Chunk>, Header), Error> {
+    let chunks = table::read(from, file_length)?;
+    let header = array::read::<u8>(&chunks[0], from)?;
+    let header = Header::decode(&header, chunks[0].offset)?;
+    if header.convention != sh_math::CONVENTION {
+        let (theirs, ours) = (&header.convention, sh_math::CONVENTION);
+        return Err(Error::Unsupported(format!("the coefficients follow the convention '{theirs}', not '{ours}'")));
+    }
+    Ok((chunks, header))
+}
+
+fn read_from(mut from: impl Read, file_length: u64) -> Result<Prt, Error> {
+    let (chunks, header) = read_header(&mut from, file_length)?;
+    let mut arrays = Arrays::default();
+    for pair in chunks.windows(2) {
+        array::read_padding(pair[0].end(), &pair[1], &mut from)?;
+        arrays.read(&pair[1], &mut from)?;
+    }
+    let prt = arrays.join(header, &chunks)?;
+    validate::validate(&prt, &chunks)?;
+    Ok(prt)
+}
+
+/// The arrays of the file, as far as they are read.
+#[derive(Default)]
+struct Arrays {
+    geometry: Geometry,
+    transfer: Transfer,
+    pictures: Vec<Vec<[u8; 4]>>,
+}
+
+impl Arrays {
+    fn read(&mut self, chunk: &Chunk, from: &mut impl Read) -> Result<(), Error> {
+        let (geometry, transfer) = (&mut self.geometry, &mut self.transfer);
+        match chunk.kind {
+            // The table allows one header, and it was read before.
+            Kind::Header => {}
+            Kind::Positions => geometry.positions = array::read(chunk, from)?,
+            Kind::Normals => geometry.normals = array::read(chunk, from)?,
+            Kind::Tangents => geometry.tangents = array::read(chunk, from)?,
+            Kind::Uv0 => geometry.uv0 = array::read(chunk, from)?,
+            Kind::Uv1 => geometry.uv1 = array::read(chunk, from)?,
+            Kind::Colors => geometry.colors = array::read(chunk, from)?,
+            Kind::Triangles => geometry.triangles = array::read(chunk, from)?,
+            Kind::Transfer => transfer.values = array::read(chunk, from)?,
+            Kind::Albedo => transfer.albedo = array::read(chunk, from)?,
+            Kind::Openness => transfer.openness = array::read(chunk, from)?,
+            Kind::Picture => self.pictures.push(array::read(chunk, from)?),
+        }
+        Ok(())
+    }
+
+    fn join(self, header: Header, chunks: &[Chunk]) -> Result<Prt, Error> {
+        if header.textures.len() != self.pictures.len() {
+            let (stated, found) = (header.textures.len(), self.pictures.len());
+            return Err(Error::invalid(
+                chunks[0].offset,
+                format!("the header names {stated} textures, the file holds {found}"),
+            ));
+        }
+        let pictures = header.textures.into_iter().zip(self.pictures);
+        let texture = |(t, rgba): (crate::TextureHeader, _)| Texture {
+            name: t.name,
+            width: t.width,
+            height: t.height,
+            rgba,
+            wrap: t.wrap,
+        };
+        Ok(Prt {
+            generator: header.generator,
+            convention: header.convention,
+            scene: header.scene,
+            settings: header.settings,
+            plan: header.plan,
+            achieved: header.achieved,
+            meshes: header.meshes,
+            materials: header.materials,
+            cameras: header.cameras,
+            geometry: self.geometry,
+            transfer: Transfer { bands: header.bands, channels: header.channels, ..self.transfer },
+            textures: pictures.map(texture).collect(),
+        })
+    }
+}

@@ -1,0 +1,79 @@
+//! A [`Prt`] becomes bytes.
+
+use crate::table::{self, Kind};
+use crate::{Error, Header, Prt, array, replace, validate};
+use std::borrow::Cow;
+use std::io::{self, Write};
+use std::path::Path;
+
+impl Prt {
+    /// Writes the file beside `path`, then renames it: there is never half a file.
+    ///
+    /// # Errors
+    /// `Invalid` where the data contradicts itself (see `docs/format.md`), `Io` where the system refuses.
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        let image = Image::of(self)?;
+        Ok(replace(path, |file| image.write(file))?)
+    }
+
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// `Invalid` where the data contradicts itself.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
+        let mut bytes = Vec::new();
+        Image::of(self)?.write(&mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+/// The file before it is written: the table and what each chunk holds.
+struct Image<'a> {
+    chunks: Vec<table::Chunk>,
+    payloads: Vec<Cow<'a, [u8]>>,
+}
+
+impl<'a> Image<'a> {
+    fn of(prt: &'a Prt) -> Result<Self, Error> {
+        let header = Header::of(prt).encode()?;
+        let mut parts = vec![(Kind::Header, 0, Cow::Owned(header))];
+        parts.extend(arrays(prt).filter(|(_, _, bytes)| !bytes.is_empty()));
+        let row =
+            |(kind, index, bytes): &(Kind, u32, Cow<[u8]>)| (*kind, *index, bytes.len() as u64, crc32fast::hash(bytes));
+        let chunks = table::lay_out(parts.iter().map(row));
+        validate::validate(prt, &chunks)?;
+        Ok(Self { chunks, payloads: parts.into_iter().map(|(_, _, bytes)| bytes).collect() })
+    }
+
+    fn write(&self, to: &mut impl Write) -> io::Result<()> {
+        table::write(&self.chunks, to)?;
+        let mut position = self.chunks[0].offset;
+        for (chunk, payload) in self.chunks.iter().zip(&self.payloads) {
+            // Less than ALIGNMENT zeros, from the end of the chunk before.
+            to.write_all(&[0; table::ALIGNMENT as usize][..(chunk.offset - position) as usize])?;
+            to.write_all(payload)?;
+            position = chunk.end();
+        }
+        Ok(())
+    }
+}
+
+/// Every array of `prt` in file order, the empty ones too.
+fn arrays(prt: &Prt) -> impl Iterator<Item = (Kind, u32, Cow<'_, [u8]>)> {
+    let (geometry, transfer) = (&prt.geometry, &prt.transfer);
+    let single = [
+        (Kind::Positions, array::bytes(&geometry.positions)),
+        (Kind::Normals, array::bytes(&geometry.normals)),
+        (Kind::Tangents, array::bytes(&geometry.tangents)),
+        (Kind::Uv0, array::bytes(&geometry.uv0)),
+        (Kind::Uv1, array::bytes(&geometry.uv1)),
+        (Kind::Colors, array::bytes(&geometry.colors)),
+        (Kind::Triangles, array::bytes(&geometry.triangles)),
+        (Kind::Transfer, array::bytes(&transfer.values)),
+        (Kind::Albedo, array::bytes(&transfer.albedo)),
+        (Kind::Openness, array::bytes(&transfer.openness)),
+    ];
+    let pictures = prt.textures.iter().enumerate();
+    let pictures = pictures.map(|(i, texture)| (Kind::Picture, i as u32, array::bytes(&texture.rgba)));
+    single.into_iter().map(|(kind, bytes)| (kind, 0, bytes)).chain(pictures)
+}

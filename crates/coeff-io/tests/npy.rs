@@ -1,0 +1,81 @@
+//! Exports are read back by a reader of their own, without the crate that wrote them.
+
+mod sample;
+
+use coeff_io::{Transfer, export};
+use sample::sample;
+use std::path::Path;
+
+/// Shape and values of a `.npy` file of version 1.0 or 2.0 with little-endian f32 in C order.
+fn read_npy(path: &Path) -> (Vec<usize>, Vec<f32>) {
+    let bytes = std::fs::read(path).unwrap();
+    assert_eq!(&bytes[..6], b"\x93NUMPY");
+    let (length, start) = match bytes[6] {
+        1 => (u16::from_le_bytes([bytes[8], bytes[9]]) as usize, 10),
+        _ => (u32::from_le_bytes(bytes[8..12].try_into().unwrap()) as usize, 12),
+    };
+    let header = std::str::from_utf8(&bytes[start..start + length]).unwrap();
+    assert!(header.contains("'descr': '<f4'") && header.contains("'fortran_order': False"), "{header}");
+    let shape = header.split_once("'shape': (").unwrap().1.split_once(')').unwrap().0;
+    let shape = shape.split(',').filter(|n| !n.trim().is_empty()).map(|n| n.trim().parse().unwrap());
+    let values = bytes[start + length..].chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap()));
+    (shape.collect(), values.collect())
+}
+
+#[test]
+fn three_channels_have_the_albedo_in_the_transfer() {
+    let folder = tempfile::tempdir().unwrap();
+    let prt = sample();
+    std::fs::write(folder.path().join("albedo.npy"), "of an earlier export").unwrap();
+    export::npy(&prt, folder.path()).unwrap();
+    let (shape, values) = read_npy(&folder.path().join("transfer.npy"));
+    assert_eq!(shape, [7, 4, 3]);
+    for (i, value) in values.iter().enumerate() {
+        assert_eq!(*value, prt.transfer.values[i] * prt.transfer.albedo[i / 12][i % 3], "value {i}");
+    }
+    assert!(!folder.path().join("albedo.npy").exists());
+    assert_eq!(
+        read_npy(&folder.path().join("positions.npy")),
+        (vec![7, 3], prt.geometry.positions.as_flattened().to_vec())
+    );
+    assert_eq!(
+        read_npy(&folder.path().join("normals.npy")),
+        (vec![7, 3], prt.geometry.normals.as_flattened().to_vec())
+    );
+}
+
+/// The albedo of the sample is not 1, so that its product differs from the bare transfer.
+#[test]
+fn three_channels_have_the_albedo_in_the_transfer_can_fail() {
+    let folder = tempfile::tempdir().unwrap();
+    export::npy(&sample(), folder.path()).unwrap();
+    assert_ne!(read_npy(&folder.path().join("transfer.npy")).1, sample().transfer.values);
+}
+
+#[test]
+fn one_channel_has_the_albedo_beside() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut prt = sample();
+    let values = prt.transfer.values.iter().step_by(3).copied().collect();
+    prt.transfer = Transfer { channels: 1, values, ..prt.transfer };
+    export::npy(&prt, &folder.path().join("new/folder")).unwrap();
+    let file = |name: &str| read_npy(&folder.path().join("new/folder").join(name));
+    assert_eq!(file("transfer.npy"), (vec![7, 4, 1], prt.transfer.values.clone()));
+    assert_eq!(file("albedo.npy"), (vec![7, 3], prt.transfer.albedo.as_flattened().to_vec()));
+}
+
+#[test]
+fn light_is_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let bands = sh_math::Bands::new(2).unwrap();
+    let light = sh_math::Rgb { bands, values: vec![[1.0, 2.0, 3.0], [0.5, 0.25, 0.125], [-1.0; 3], [0.0; 3]] };
+    let npy = folder.path().join("l.npy");
+    export::light_npy(&light, &npy).unwrap();
+    assert_eq!(read_npy(&npy), (vec![4, 3], light.values.as_flattened().to_vec()));
+    let path = folder.path().join("l.json");
+    export::light_json(&light, &path).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    assert_eq!(json["bands"], 2);
+    assert_eq!(json["convention"], sh_math::CONVENTION);
+    assert_eq!(json["coefficients"][1], serde_json::json!([0.5, 0.25, 0.125]));
+}

@@ -1,0 +1,93 @@
+//! What is written is what is read, in memory and through a file.
+
+mod sample;
+
+use coeff_io::{ALIGNMENT, Kind, Prt, Transfer, check, inspect};
+use sample::sample;
+
+#[test]
+fn bytes_round_trip() {
+    let prt = sample();
+    let bytes = prt.to_bytes().unwrap();
+    assert_eq!(Prt::from_bytes(&bytes).unwrap(), prt);
+    assert_eq!(Prt::from_bytes(&bytes).unwrap().to_bytes().unwrap(), bytes);
+}
+
+#[test]
+fn bytes_round_trip_can_fail() {
+    let prt = sample();
+    let mut other = prt.clone();
+    other.transfer.values[5] += 1e-6;
+    assert_ne!(Prt::from_bytes(&other.to_bytes().unwrap()).unwrap(), prt);
+}
+
+#[test]
+fn files_round_trip_and_are_aligned() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.prt");
+    let prt = sample();
+    prt.write(&path).unwrap();
+    assert_eq!(Prt::read(&path).unwrap(), prt);
+    let seen = inspect(&path).unwrap();
+    assert_eq!(seen.file_length, std::fs::metadata(&path).unwrap().len());
+    assert_eq!(seen.header.plan, prt.plan);
+    assert!(seen.chunks.iter().all(|chunk| chunk.offset % ALIGNMENT == 0), "{:?}", seen.chunks);
+    let sums: Vec<u32> = seen.chunks.iter().map(|chunk| chunk.crc32).collect();
+    assert_eq!(check(&path, &seen.chunks).unwrap(), sums);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing else may be left behind");
+}
+
+#[test]
+fn check_finds_the_damaged_chunk() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.prt");
+    let mut bytes = sample().to_bytes().unwrap();
+    std::fs::write(&path, &bytes).unwrap();
+    let chunks = inspect(&path).unwrap().chunks;
+    let transfer = chunks.iter().position(|chunk| chunk.kind == Kind::Transfer).unwrap();
+    bytes[chunks[transfer].offset as usize + 9] ^= 4;
+    std::fs::write(&path, &bytes).unwrap();
+    let sums = check(&path, &chunks).unwrap();
+    let wrong: Vec<usize> = (0..chunks.len()).filter(|i| sums[*i] != chunks[*i].crc32).collect();
+    assert_eq!(wrong, [transfer]);
+}
+
+/// An effect that a scene does not call for takes no bytes: a file without options has only its six chunks.
+#[test]
+fn absent_parts_take_no_chunk() {
+    let mut prt = sample();
+    prt.geometry.tangents.clear();
+    prt.geometry.uv0.clear();
+    prt.geometry.uv1.clear();
+    prt.geometry.colors.clear();
+    prt.textures.clear();
+    prt.materials[0] = prt.materials[1].clone();
+    prt.plan.channels = 1;
+    let values = prt.transfer.values.iter().step_by(3).copied().collect();
+    prt.transfer = Transfer { channels: 1, values, openness: Vec::new(), ..prt.transfer };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.prt");
+    prt.write(&path).unwrap();
+    assert_eq!(Prt::read(&path).unwrap(), prt);
+    let kinds: Vec<Kind> = inspect(&path).unwrap().chunks.iter().map(|chunk| chunk.kind).collect();
+    let expected = [Kind::Header, Kind::Positions, Kind::Normals, Kind::Triangles, Kind::Transfer, Kind::Albedo];
+    assert_eq!(kinds, expected);
+}
+
+#[test]
+fn a_failed_write_leaves_the_old_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.prt");
+    sample().write(&path).unwrap();
+    let before = std::fs::read(&path).unwrap();
+    let failed = coeff_io::replace(&path, |file| {
+        std::io::Write::write_all(file, b"half a file")?;
+        Err(std::io::Error::other("the disk is full"))
+    });
+    assert!(failed.is_err());
+    let mut broken = sample();
+    broken.transfer.values[0] = f32::NAN;
+    assert!(broken.write(&path).is_err());
+    assert_eq!(std::fs::read(&path).unwrap(), before);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}

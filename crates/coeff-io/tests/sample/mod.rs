@@ -1,0 +1,147 @@
+//! A small baked scene in which every optional part is present.
+
+use coeff_io::*;
+
+/// Two meshes, two textures, three channels, two bands: every chunk kind and every record occurs.
+pub(crate) fn sample() -> Prt {
+    Prt {
+        generator: "relume 0.1.0".into(),
+        convention: sh_math::CONVENTION.into(),
+        scene: "builtin:sample".into(),
+        settings: settings(),
+        plan: plan(),
+        achieved: Achieved {
+            error: [0.005, 0.009, 0.01],
+            worst_receiver: 4,
+            visibility_rays: 1_234_567_890_123,
+            bounce_rays: 42,
+            bounces: 2,
+            bounce_changes: vec![0.25, 0.0625],
+            repairs: RepairCounts { inside: 1, bad_normals: 2, unrepaired: 0 },
+        },
+        meshes: vec![mesh("floor", 0, [0, 4], [0, 2]), mesh("wall é", 1, [4, 3], [2, 1])],
+        materials: vec![material("stone"), plain_material("glass")],
+        cameras: vec![camera()],
+        geometry: geometry(),
+        transfer: transfer(),
+        textures: vec![texture("a.png", 3, 1), texture("b.png", 2, 2)],
+    }
+}
+
+fn settings() -> Settings {
+    Settings {
+        bands: 2,
+        quality: Quality::Error(0.01),
+        bounces: Bounces::Fixed(2),
+        effects: Effects::Only(vec![Effect::Visibility, Effect::Interreflection, Effect::Color]),
+        sampler: Sampler::OwenSobol,
+        seed: 7,
+        memory: 1 << 30,
+    }
+}
+
+fn plan() -> Plan {
+    let row = PlanRow {
+        effect: Effect::Color,
+        simulate: true,
+        reason: "the floor is red".into(),
+        called_for_by: vec!["floor".into(), "wall é".into()],
+        rays: 0,
+        bytes: 336,
+    };
+    let masks = PlanRow {
+        effect: Effect::Masks,
+        simulate: false,
+        reason: "no mask".into(),
+        called_for_by: vec![],
+        rays: 0,
+        bytes: 0,
+    };
+    Plan { rows: vec![row, masks], receivers: 7, shadowed_receivers: 3, channels: 3, bounces: 2 }
+}
+
+fn mesh(name: &str, material: u32, vertices: [u32; 2], triangles: [u32; 2]) -> Mesh {
+    Mesh {
+        name: name.into(),
+        material,
+        first_vertex: vertices[0],
+        vertices: vertices[1],
+        first_triangle: triangles[0],
+        triangles: triangles[1],
+    }
+}
+
+fn slot(texture: u32, uv_set: u8) -> Option<TextureSlot> {
+    Some(TextureSlot { texture, uv_set, transform: [[1.0, 0.0, 0.5], [0.0, -1.0, 1.0]] })
+}
+
+fn plain_material(name: &str) -> Material {
+    Material {
+        name: name.into(),
+        base_color: [1.0; 4],
+        base_color_texture: None,
+        metallic: 0.0,
+        roughness: 1.0,
+        metallic_roughness_texture: None,
+        normal_texture: None,
+        normal_scale: 1.0,
+        emissive: [0.0; 3],
+        emissive_texture: None,
+        alpha: AlphaMode::Blend,
+        specular: false,
+        transmission: 0.5,
+    }
+}
+
+fn material(name: &str) -> Material {
+    Material {
+        base_color: [0.8, 0.1, 0.1, 1.0],
+        base_color_texture: slot(0, 0),
+        metallic_roughness_texture: slot(1, 1),
+        normal_texture: slot(1, 0),
+        emissive: [0.0, 3.0, 0.0],
+        emissive_texture: slot(0, 1),
+        alpha: AlphaMode::Mask(0.5),
+        specular: true,
+        transmission: 0.0,
+        ..plain_material(name)
+    }
+}
+
+fn camera() -> Camera {
+    Camera {
+        name: "front".into(),
+        eye: [0.0, 1.0, 5.0],
+        target: [0.0, 1.0, 0.0],
+        up: [0.0, 1.0, 0.0],
+        vertical_fov: 0.75,
+    }
+}
+
+fn geometry() -> Geometry {
+    let number = |v: usize, i: usize| (v * 3 + i) as f32 * 0.125;
+    Geometry {
+        positions: (0..7).map(|v| std::array::from_fn(|i| number(v, i) - 1.0)).collect(),
+        normals: (0..7).map(|v| if v < 4 { [0.0, 1.0, 0.0] } else { [0.6, 0.0, -0.8] }).collect(),
+        tangents: vec![[1.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, -1.0]].into_iter().cycle().take(7).collect(),
+        uv0: (0..7).map(|v| std::array::from_fn(|i| number(v, i))).collect(),
+        uv1: (0..7).map(|v| std::array::from_fn(|i| number(v, i) * 0.5)).collect(),
+        colors: (0..7).map(|v| [1.0, number(v, 0), 0.5, 1.0]).collect(),
+        triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6]],
+    }
+}
+
+fn transfer() -> Transfer {
+    Transfer {
+        bands: 2,
+        channels: 3,
+        values: (0..7 * 4 * 3).map(|i| i as f32 * 0.25 - 3.0).collect(),
+        albedo: (0..7).map(|v| [0.125 * v as f32, 0.5, 1.0]).collect(),
+        openness: (0..7).map(|v| 0.125 * v as f32).collect(),
+    }
+}
+
+fn texture(name: &str, width: u32, height: u32) -> Texture {
+    let rgba = (0..width * height).map(|i| [i as u8, 128, 255 - i as u8, 255]).collect();
+    Texture { name: name.into(), width, height, rgba, wrap: [Wrap::Repeat, Wrap::Mirror] }
+}
