@@ -13,11 +13,7 @@ impl Bands {
     /// `count` bands, or `None` outside `1..=Bands::MAX`.
     #[must_use]
     pub const fn new(count: u32) -> Option<Self> {
-        if count >= 1 && count <= Self::MAX {
-            Some(Self(count))
-        } else {
-            None
-        }
+        if count >= 1 && count <= Self::MAX { Some(Self(count)) } else { None }
     }
 
     /// Number of bands.
@@ -55,26 +51,14 @@ mod tests {
     #[test]
     fn indices_run_without_gap() {
         let bands = Bands::new(7).expect("7 bands exist");
-        let all: Vec<usize> = bands
-            .degrees()
-            .flat_map(|l| (-(l as isize)..=l as isize).map(move |m| index(l, m)))
-            .collect();
-        assert_eq!(
-            all,
-            (0..bands.coefficients()).collect::<Vec<_>>(),
-            "l(l+1)+m must count 0, 1, 2, ..."
-        );
+        let all: Vec<usize> =
+            bands.degrees().flat_map(|l| (-(l as isize)..=l as isize).map(move |m| index(l, m))).collect();
+        assert_eq!(all, (0..bands.coefficients()).collect::<Vec<_>>(), "l(l+1)+m must count 0, 1, 2, ...");
     }
 
     #[test]
     fn bounds_are_kept() {
-        assert!(
-            Bands::new(0).is_none() && Bands::new(Bands::MAX + 1).is_none(),
-            "outside 1..=MAX there is none"
-        );
-        assert!(
-            Bands::new(1).is_some() && Bands::new(Bands::MAX).is_some(),
-            "the ends are inside"
-        );
+        assert!(Bands::new(0).is_none() && Bands::new(Bands::MAX + 1).is_none(), "outside 1..=MAX there is none");
+        assert!(Bands::new(1).is_some() && Bands::new(Bands::MAX).is_some(), "the ends are inside");
     }
 }

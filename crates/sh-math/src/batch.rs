@@ -12,10 +12,7 @@ use crate::{Bands, recurrence, straight};
 /// When `ys` or `zs` is not as long as `xs`, or `out` is shorter than `bands.coefficients() * xs.len()`.
 pub fn evaluate_batch<T: Real>(bands: Bands, xs: &[T], ys: &[T], zs: &[T], out: &mut [T]) {
     let n = xs.len();
-    assert!(
-        ys.len() == n && zs.len() == n,
-        "the three components need one length"
-    );
+    assert!(ys.len() == n && zs.len() == n, "the three components need one length");
     let out = &mut out[..bands.coefficients() * n];
     let whole = n - n % LANES;
     for first in (0..whole).step_by(LANES) {
@@ -42,11 +39,7 @@ fn load<T: Real>(source: &[T]) -> Block<T> {
 
 /// One block through the straight-line code or the recurrence.
 #[inline(always)]
-fn evaluate_block<T: Real>(
-    bands: Bands,
-    direction: [Block<T>; 3],
-    mut put: impl FnMut(usize, Block<T>),
-) {
+fn evaluate_block<T: Real>(bands: Bands, direction: [Block<T>; 3], mut put: impl FnMut(usize, Block<T>)) {
     if !straight::evaluate_into(bands.count(), direction, &mut put) {
         recurrence::evaluate_into(bands.count(), direction, put);
     }

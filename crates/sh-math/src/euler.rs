@@ -24,18 +24,10 @@ pub(crate) fn euler_from_matrix(rotation: DMat3) -> Euler {
     let [c0, c1, c2] = rotation.to_cols_array_2d();
     let horizontal = libm::hypot(c2[0], c2[1]);
     let beta = libm::atan2(horizontal, c2[2]);
-    let alpha = if horizontal == 0.0 {
-        0.0
-    } else {
-        libm::atan2(c2[1], c2[0])
-    };
+    let alpha = if horizontal == 0.0 { 0.0 } else { libm::atan2(c2[1], c2[0]) };
     let (sin_alpha, cos_alpha) = libm::sincos(alpha);
     // second row of Rz(-alpha) R = Ry(beta) Rz(gamma) is (sin gamma, cos gamma, 0)
     let sin_gamma = cos_alpha * c0[1] - sin_alpha * c0[0];
     let cos_gamma = cos_alpha * c1[1] - sin_alpha * c1[0];
-    Euler {
-        alpha,
-        beta,
-        gamma: libm::atan2(sin_gamma, cos_gamma),
-    }
+    Euler { alpha, beta, gamma: libm::atan2(sin_gamma, cos_gamma) }
 }

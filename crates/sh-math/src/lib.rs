@@ -13,6 +13,7 @@
 
 mod bands;
 mod batch;
+mod double_double;
 mod euler;
 mod evaluate;
 mod light;

@@ -17,10 +17,7 @@ impl Rgb {
     /// No light.
     #[must_use]
     pub fn black(bands: Bands) -> Self {
-        Self {
-            bands,
-            values: vec![[0.0; 3]; bands.coefficients()],
-        }
+        Self { bands, values: vec![[0.0; 3]; bands.coefficients()] }
     }
 
     /// The radiance that the coefficients describe along the unit vector `direction`; it may ring below zero.
@@ -41,8 +38,7 @@ impl Rgb {
     #[must_use]
     pub fn rotated(&self, world_from_light: Quat) -> Self {
         let mut turned = self.clone();
-        Rotation::new(self.bands, world_from_light)
-            .apply_interleaved(turned.values.as_flattened_mut(), 3);
+        Rotation::new(self.bands, world_from_light).apply_interleaved(turned.values.as_flattened_mut(), 3);
         turned
     }
 
@@ -63,9 +59,6 @@ impl Rgb {
     #[must_use]
     pub fn truncated(&self, bands: Bands) -> Self {
         let bands = bands.min(self.bands);
-        Self {
-            bands,
-            values: self.values[..bands.coefficients()].to_vec(),
-        }
+        Self { bands, values: self.values[..bands.coefficients()].to_vec() }
     }
 }

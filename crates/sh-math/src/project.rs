@@ -18,13 +18,7 @@ pub fn project(bands: Bands, samples: impl IntoIterator<Item = (DVec3, [f64; 3])
             }
         }
     }
-    Rgb {
-        bands,
-        values: sums
-            .into_iter()
-            .map(|sum| sum.map(|channel| channel as f32))
-            .collect(),
-    }
+    Rgb { bands, values: sums.into_iter().map(|sum| sum.map(|channel| channel as f32)).collect() }
 }
 
 /// Coefficients of a scalar function, as [`project`], kept in f64.

@@ -22,11 +22,9 @@ pub fn evaluate<T: Real>(n_bands: usize, [x, y, z]: [T; 3], out: &mut [T]) {
 }
 
 /// The recurrence over any [`Value`]; hands each function to `put` with its index, order by order.
-pub(crate) fn evaluate_into<V: Value>(
-    n_bands: usize,
-    [x, y, z]: [V; 3],
-    mut put: impl FnMut(usize, V),
-) {
+#[inline(always)]
+pub(crate) fn evaluate_into<V: Value>(n_bands: usize, [x, y, z]: [V; 3], mut put: impl FnMut(usize, V)) {
+    let table = if n_bands <= TABLE { step_table() } else { &[] };
     // (x + i y)^m = cosine + i sine, times sin^m theta
     let (mut cosine, mut sine) = (V::of(1.0), V::of(0.0));
     let mut sectoral = (0.25 / std::f64::consts::PI).sqrt();
@@ -34,8 +32,9 @@ pub(crate) fn evaluate_into<V: Value>(
         let (mut before, mut q) = (V::of(0.0), V::of(sectoral));
         for l in m..n_bands {
             if l > m {
-                let [a, b] = step(l, m);
-                (before, q) = (q, V::of(a) * (z * q - V::of(b) * before));
+                let known = table.get(l * (l - 1) / 2 + m).copied();
+                let [a, ab] = known.unwrap_or_else(|| step(l, m));
+                (before, q) = (q, V::of(a) * z * q - V::of(ab) * before);
             }
             put(l * (l + 1) + m, q * cosine);
             if m > 0 {
@@ -43,34 +42,33 @@ pub(crate) fn evaluate_into<V: Value>(
             }
         }
         (cosine, sine) = (x * cosine - y * sine, x * sine + y * cosine);
-        let next = (m + 1) as f64;
-        // the real functions of m > 0 carry one sqrt(2), which enters with m = 1
-        let square = if m == 0 { 2.0 } else { 1.0 } * (2.0 * next + 1.0) / (2.0 * next);
-        sectoral *= square.sqrt();
+        sectoral *= sectoral_step(m + 1);
     }
 }
 
-/// `[a_lm, b_lm]` of the recurrence, `l > m`.
-#[inline]
-fn step(l: usize, m: usize) -> [f64; 2] {
+/// `Q_mm / Q_(m-1)(m-1)`; the real functions of `m > 0` carry one `sqrt(2)`, which enters with m = 1.
+fn sectoral_step(m: usize) -> f64 {
+    let both = if m == 1 { 2.0 } else { 1.0 };
+    (both * (2 * m + 1) as f64 / (2 * m) as f64).sqrt()
+}
+
+/// Bands whose constants are kept.
+const TABLE: usize = Bands::MAX as usize;
+
+/// `[a_lm, a_lm b_lm]` for `m < l < TABLE`, at `l (l - 1) / 2 + m`.
+fn step_table() -> &'static [[f64; 2]] {
     static STEPS: OnceLock<Vec<[f64; 2]>> = OnceLock::new();
-    const TABLE: usize = Bands::MAX as usize;
-    if l < TABLE {
-        let table = STEPS.get_or_init(|| {
-            let pairs = (0..TABLE).flat_map(|l| (0..l).map(move |m| (l, m)));
-            pairs.map(|(l, m)| compute_step(l, m)).collect()
-        });
-        table[l * (l - 1) / 2 + m]
-    } else {
-        compute_step(l, m)
-    }
+    STEPS.get_or_init(|| {
+        let pairs = (0..TABLE).flat_map(|l| (0..l).map(move |m| (l, m)));
+        pairs.map(|(l, m)| step(l, m)).collect()
+    })
 }
 
-/// The formulas at the head of this file. All products are exact in f64 to degree 10^7.
-fn compute_step(l: usize, m: usize) -> [f64; 2] {
-    let (l, m) = (l as f64, m as f64);
+/// `[a_lm, a_lm b_lm]`, `l > m`, by the formulas at the head of this file.
+fn step(l: usize, m: usize) -> [f64; 2] {
+    let (l, m, k) = (l as f64, m as f64, l as f64 - 1.0);
     let a = ((4.0 * l * l - 1.0) / (l * l - m * m)).sqrt();
-    let k = l - 1.0;
+    // zero where Q_(l-2)m does not exist, also at l = 1 where the denominator is negative
     let b = ((k * k - m * m) / (4.0 * k * k - 1.0)).abs().sqrt();
-    [a, b]
+    [a, a * b]
 }

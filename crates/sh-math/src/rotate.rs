@@ -27,10 +27,7 @@ impl Rotation {
     /// [`Rotation::new`] with a quaternion in f64.
     #[must_use]
     pub fn from_f64(bands: Bands, quaternion: DQuat) -> Self {
-        debug_assert!(
-            quaternion.length_squared() > 0.0,
-            "a rotation needs a quaternion other than zero"
-        );
+        debug_assert!(quaternion.length_squared() > 0.0, "a rotation needs a quaternion other than zero");
         Self::from_matrix(bands, matrix_from_quaternion(quaternion))
     }
 
@@ -38,10 +35,7 @@ impl Rotation {
     #[must_use]
     pub fn from_matrix(bands: Bands, rotation: DMat3) -> Self {
         let Euler { alpha, beta, gamma } = euler_from_matrix(rotation);
-        Self {
-            bands,
-            turns: [gamma, beta, alpha].map(|angle| multiples(bands, angle)),
-        }
+        Self { bands, turns: [gamma, beta, alpha].map(|angle| multiples(bands, angle)) }
     }
 
     /// Number of bands that it was built for.
@@ -66,14 +60,8 @@ impl Rotation {
     /// As [`Rotation::apply`], and when `channels` is zero.
     pub fn apply_interleaved<T: Real>(&self, values: &mut [T], channels: usize) {
         let count = (values.len() / channels).isqrt();
-        assert!(
-            count * count * channels == values.len(),
-            "coefficients end inside a band"
-        );
-        assert!(
-            count <= self.bands.count(),
-            "more bands than the rotation was built for"
-        );
+        assert!(count * count * channels == values.len(), "coefficients end inside a band");
+        assert!(count <= self.bands.count(), "more bands than the rotation was built for");
         let mut scratch = vec![0.0; 4 * count];
         let (band, turned) = scratch.split_at_mut(2 * count);
         for l in 1..count {
@@ -81,13 +69,10 @@ impl Rotation {
             let (band, turned) = (&mut band[..2 * l + 1], &mut turned[..2 * l + 1]);
             for channel in 0..channels {
                 let own = rows[channel..].iter().step_by(channels);
-                band.iter_mut()
-                    .zip(own)
-                    .for_each(|(to, from)| *to = from.to_f64());
+                band.iter_mut().zip(own).for_each(|(to, from)| *to = from.to_f64());
                 self.rotate_band(l, band, turned);
                 let own = rows[channel..].iter_mut().step_by(channels);
-                own.zip(&*band)
-                    .for_each(|(to, from)| *to = T::from_f64(*from));
+                own.zip(&*band).for_each(|(to, from)| *to = T::from_f64(*from));
             }
         }
     }

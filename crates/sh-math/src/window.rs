@@ -32,11 +32,7 @@ pub fn automatic(light: &Rgb) -> Vec<f64> {
         return fixed;
     };
     let searched = laplacian(lambda, light.bands);
-    if irradiance_error(light, &searched) <= irradiance_error(light, &fixed) {
-        searched
-    } else {
-        fixed
-    }
+    if irradiance_error(light, &searched) <= irradiance_error(light, &fixed) { searched } else { fixed }
 }
 
 /// Relative L2 error over the sphere that `window` puts on the irradiance of the band-limited `light`.
@@ -45,19 +41,11 @@ pub fn irradiance_error(light: &Rgb, window: &[f64]) -> f64 {
     let (mut error, mut total) = (0.0, 0.0);
     for l in light.bands.degrees() {
         let rows = &light.values[l * l..(l + 1) * (l + 1)];
-        let power: f64 = rows
-            .as_flattened()
-            .iter()
-            .map(|&value| f64::from(value) * f64::from(value))
-            .sum();
+        let power: f64 = rows.as_flattened().iter().map(|&value| f64::from(value) * f64::from(value)).sum();
         let irradiance = power * zonal::clamped_cosine(l) * zonal::clamped_cosine(l);
         let lost = 1.0 - window.get(l).copied().unwrap_or(0.0);
         total += irradiance;
         error += irradiance * lost * lost;
     }
-    if total > 0.0 {
-        (error / total).sqrt()
-    } else {
-        0.0
-    }
+    if total > 0.0 { (error / total).sqrt() } else { 0.0 }
 }

@@ -17,15 +17,9 @@ pub fn clamped_cosine(l: usize) -> f64 {
 #[must_use]
 pub fn phong(exponent: f64, l: usize) -> f64 {
     let even = l.is_multiple_of(2);
-    let first = if even {
-        1.0
-    } else {
-        (exponent + 1.0) / (exponent + 2.0)
-    };
+    let first = if even { 1.0 } else { (exponent + 1.0) / (exponent + 2.0) };
     let degrees = (if even { 2 } else { 3 }..=l).step_by(2);
-    degrees.fold(first, |value, k| {
-        value * (exponent - k as f64 + 2.0) / (exponent + k as f64 + 1.0)
-    })
+    degrees.fold(first, |value, k| value * (exponent - k as f64 + 2.0) / (exponent + k as f64 + 1.0))
 }
 
 /// Writes the transfer of an unshadowed white diffuse receiver with unit `normal`: the coefficients of

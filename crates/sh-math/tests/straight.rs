@@ -25,10 +25,7 @@ fn source_is_up_to_date() {
         std::fs::write(&path, &expected).expect("src can be written");
     }
     let found = std::fs::read_to_string(&path).expect("src/straight.rs can be read");
-    assert!(
-        found == expected,
-        "src/straight.rs is not what its generator writes: run with SH_MATH_BLESS=1"
-    );
+    assert!(found == expected, "src/straight.rs is not what its generator writes: run with SH_MATH_BLESS=1");
 }
 
 /// The whole file.
@@ -57,11 +54,8 @@ fn function(n: usize) -> String {
     };
     let plural = if n == 1 { "band" } else { "bands" };
     let mut text = format!("\n/// {n} {plural}.\n#[inline(always)]\n");
-    writeln!(
-        text,
-        "fn bands_{n}<V: Value>({direction}: [V; 3], mut put: impl FnMut(usize, V)) {{"
-    )
-    .expect("a string takes all");
+    writeln!(text, "fn bands_{n}<V: Value>({direction}: [V; 3], mut put: impl FnMut(usize, V)) {{")
+        .expect("a string takes all");
     if n > 2 {
         text += "    let z2 = z * z;\n";
     }
@@ -93,17 +87,10 @@ fn order(n: usize, m: usize) -> String {
             0 => line(format!("put(0, V::of({constant:?}));")),
             1 => line(format!("let q1 = V::of({p1:?}) * z;")),
             2 => line(format!("let q2 = V::of({p2:?}) * z2 - V::of({r2:?});")),
-            3 => line(format!(
-                "let q3 = z * (V::of({p3:?}) * z2 - V::of({r3:?}));"
-            )),
+            3 => line(format!("let q3 = z * (V::of({p3:?}) * z2 - V::of({r3:?}));")),
             k => {
                 let [a, b] = step(l, m);
-                line(format!(
-                    "let q{k} = V::of({a:?}) * z * q{} - V::of({:?}) * q{};",
-                    k - 1,
-                    a * b,
-                    k - 2
-                ));
+                line(format!("let q{k} = V::of({a:?}) * z * q{} - V::of({:?}) * q{};", k - 1, a * b, k - 2));
             }
         }
         let (k, index) = (l - m, l * (l + 1));
@@ -121,9 +108,7 @@ fn order(n: usize, m: usize) -> String {
 
 /// `Q_mm`: `sqrt((2m+1)!! / (4 pi (2m)!!))`, times `sqrt(2)` for `m > 0`.
 fn sectoral(m: usize) -> f64 {
-    let product: f64 = (1..=m)
-        .map(|k| (2 * k + 1) as f64 / (2 * k) as f64)
-        .product();
+    let product: f64 = (1..=m).map(|k| (2 * k + 1) as f64 / (2 * k) as f64).product();
     let both = if m == 0 { 1.0 } else { 2.0 };
     (both * product / (4.0 * std::f64::consts::PI)).sqrt()
 }
@@ -131,8 +116,5 @@ fn sectoral(m: usize) -> f64 {
 /// `[a_lm, b_lm]` as at the head of `src/recurrence.rs`.
 fn step(l: usize, m: usize) -> [f64; 2] {
     let (l, m, k) = (l as f64, m as f64, l as f64 - 1.0);
-    [
-        ((4.0 * l * l - 1.0) / (l * l - m * m)).sqrt(),
-        ((k * k - m * m) / (4.0 * k * k - 1.0)).sqrt(),
-    ]
+    [((4.0 * l * l - 1.0) / (l * l - m * m)).sqrt(), ((k * k - m * m) / (4.0 * k * k - 1.0)).sqrt()]
 }

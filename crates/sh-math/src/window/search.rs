@@ -22,9 +22,7 @@ pub fn find_lambda(light: &Rgb) -> Option<f64> {
     if lifts(0.0) {
         return Some(0.0);
     }
-    let mut high = LAMBDAS
-        .map(|power| libm::exp2(f64::from(power)))
-        .find(|&lambda| lifts(lambda))?;
+    let mut high = LAMBDAS.map(|power| libm::exp2(f64::from(power))).find(|&lambda| lifts(lambda))?;
     let mut low = 0.0;
     while high - low > 1e-6 * high {
         let middle = 0.5 * (low + high);
@@ -55,47 +53,28 @@ impl<'a> Field<'a> {
         for &direction in &directions {
             evaluate_f64(light.bands, direction, &mut basis);
             for channel in 0..3 {
-                parts.extend(
-                    light
-                        .bands
-                        .degrees()
-                        .map(|l| band_sum(light, &basis, l, channel)),
-                );
+                parts.extend(light.bands.degrees().map(|l| band_sum(light, &basis, l, channel)));
             }
         }
-        Self {
-            light,
-            directions,
-            parts,
-        }
+        Self { light, directions, parts }
     }
 
     /// Lowest value over directions and channels: the grid's lowest points, each followed downhill.
     fn minimum(&self, window: &[f64]) -> f64 {
-        let values: Vec<f64> = self
-            .parts
-            .chunks_exact(self.light.bands.count())
-            .map(|bands| weighted(bands, window))
-            .collect();
-        (0..3)
-            .map(|channel| self.channel_minimum(&values, window, channel))
-            .fold(f64::INFINITY, f64::min)
+        let values: Vec<f64> =
+            self.parts.chunks_exact(self.light.bands.count()).map(|bands| weighted(bands, window)).collect();
+        (0..3).map(|channel| self.channel_minimum(&values, window, channel)).fold(f64::INFINITY, f64::min)
     }
 
     /// Lowest value of one channel; `values` are those of the grid, `[direction][channel]`.
     fn channel_minimum(&self, values: &[f64], window: &[f64], channel: usize) -> f64 {
         let own = || values.iter().skip(channel).step_by(3).copied();
-        let (lowest, highest) = own().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(v), h.max(v))
-        });
+        let (lowest, highest) = own().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if highest <= lowest {
             return lowest;
         }
         let reach = lowest + CANDIDATE_SHARE * (highest - lowest);
-        let mut candidates: Vec<(f64, usize)> = own()
-            .zip(0..)
-            .filter(|&(value, _)| value <= reach)
-            .collect();
+        let mut candidates: Vec<(f64, usize)> = own().zip(0..).filter(|&(value, _)| value <= reach).collect();
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         candidates.truncate(MOST_CANDIDATES);
         candidates
@@ -110,8 +89,7 @@ impl<'a> Field<'a> {
         let mut step = 1.0 / self.light.bands.count() as f64;
         while step > 1e-5 {
             let (tangent, bitangent) = at.any_orthonormal_pair();
-            let tries = [tangent, -tangent, bitangent, -bitangent]
-                .map(|along| (at + along * step).normalize());
+            let tries = [tangent, -tangent, bitangent, -bitangent].map(|along| (at + along * step).normalize());
             let best = tries
                 .map(|direction| (self.value(direction, window, channel), direction))
                 .into_iter()
@@ -128,12 +106,7 @@ impl<'a> Field<'a> {
     fn value(&self, direction: DVec3, window: &[f64], channel: usize) -> f64 {
         let mut basis = vec![0.0; self.light.bands.coefficients()];
         evaluate_f64(self.light.bands, direction, &mut basis);
-        let bands: Vec<f64> = self
-            .light
-            .bands
-            .degrees()
-            .map(|l| band_sum(self.light, &basis, l, channel))
-            .collect();
+        let bands: Vec<f64> = self.light.bands.degrees().map(|l| band_sum(self.light, &basis, l, channel)).collect();
         weighted(&bands, window)
     }
 }
@@ -141,18 +114,12 @@ impl<'a> Field<'a> {
 /// What degree `l` of one channel adds where the basis functions are `basis`.
 fn band_sum(light: &Rgb, basis: &[f64], l: usize, channel: usize) -> f64 {
     let range = l * l..(l + 1) * (l + 1);
-    light.values[range.clone()]
-        .iter()
-        .zip(&basis[range])
-        .fold(0.0, |sum, (v, y)| sum + f64::from(v[channel]) * y)
+    light.values[range.clone()].iter().zip(&basis[range]).fold(0.0, |sum, (v, y)| sum + f64::from(v[channel]) * y)
 }
 
 /// The bands weighted by the window; those beyond its end count nothing.
 fn weighted(bands: &[f64], window: &[f64]) -> f64 {
-    bands
-        .iter()
-        .zip(window)
-        .fold(0.0, |sum, (band, factor)| sum + band * factor)
+    bands.iter().zip(window).fold(0.0, |sum, (band, factor)| sum + band * factor)
 }
 
 /// `count` directions spread evenly: z in equal steps, longitude by the golden angle.
