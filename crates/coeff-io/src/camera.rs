@@ -51,3 +51,33 @@ impl Prt {
         positions.fold(empty, |(least, greatest), p| (least.min(p), greatest.max(p)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        let (eye, target, up) = ([1.0, 2.0, 8.0], [1.0, 2.0, 0.0], [0.0, 1.0, 0.0]);
+        Camera { name: String::new(), eye, target, up, vertical_fov: std::f32::consts::FRAC_PI_2 }
+    }
+
+    /// Looking along -z with a quarter turn of view, the edge of the picture lies at 45 degrees.
+    #[test]
+    fn points_land_where_the_lens_says() {
+        let clip_from_world = camera().clip_from_world(2.0, 1.0, 100.0);
+        let project = |x, y, z| clip_from_world.project_point3(Vec3::new(x, y, z));
+        assert!(project(1.0, 2.0, 7.0).distance(Vec3::ZERO) < 1e-6, "the axis at the near plane");
+        assert!(project(1.0, 2.0, -92.0).distance(Vec3::Z) < 1e-5, "the axis at the far plane");
+        let corner = project(1.0 + 2.0 * 4.0, 2.0 + 4.0, 4.0);
+        assert!(corner.truncate().distance(glam::Vec2::ONE) < 1e-6, "the upper right corner: {corner}");
+    }
+
+    #[test]
+    fn a_camera_that_looks_along_its_up_direction_has_axes() {
+        for direction in [Vec3::Y, Vec3::NEG_Y, Vec3::X] {
+            let target = (Vec3::from(camera().eye) + direction).to_array();
+            let [right, up, back] = Camera { target, up: direction.to_array(), ..camera() }.axes();
+            assert!(right.cross(up).distance(back) < 1e-6 && back.distance(-direction) < 1e-6);
+        }
+    }
+}
