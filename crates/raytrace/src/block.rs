@@ -1,0 +1,145 @@
+//! A block of triangles as one origin sees it: the planes through the origin and each edge, ready for any direction.
+
+use crate::exact::volume;
+use crate::lanes::Lanes;
+use crate::tree::{BLOCK, Block};
+use glam::Vec3;
+
+/// Bound on the rounding of an edge product over its largest term (64 units of 2^-24; at most 48 arise).
+const SLACK: f32 = 3.814_697_3e-6;
+
+/// Added to every bound for products that vanish below the smallest normal number.
+const UNDERFLOW: f32 = 1.0e-40;
+
+/// For each triangle the normals of the planes through the origin and an edge, turned so that a direction meets the
+/// triangle where all three products with it are positive, and what rounding can do to a product.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// x, y, z of the normal of edge bc, then of ca, then of ab.
+    pub(crate) normals: [[f32; BLOCK]; 9],
+    /// Bounds for edges bc, ca, ab, for directions of components up to 1.
+    pub(crate) slack: [[f32; BLOCK]; 3],
+}
+
+impl Seen {
+    pub(crate) const NOTHING: Seen = Seen {
+        normals: [[0.0; BLOCK]; 9],
+        slack: [[-1.0; BLOCK]; 3],
+    };
+}
+
+type Point<F> = [F; 3];
+
+#[inline(always)]
+fn sub<F: Lanes>(a: Point<F>, b: Point<F>) -> Point<F> {
+    [a[0].sub(b[0]), a[1].sub(b[1]), a[2].sub(b[2])]
+}
+
+#[inline(always)]
+fn cross<F: Lanes>(a: Point<F>, b: Point<F>) -> Point<F> {
+    [
+        a[1].mul(b[2]).sub(a[2].mul(b[1])),
+        a[2].mul(b[0]).sub(a[0].mul(b[2])),
+        a[0].mul(b[1]).sub(a[1].mul(b[0])),
+    ]
+}
+
+#[inline(always)]
+pub(crate) fn dot<F: Lanes>(a: Point<F>, b: Point<F>) -> F {
+    a[0].mul(b[0]).add(a[1].mul(b[1])).add(a[2].mul(b[2]))
+}
+
+#[inline(always)]
+fn size<F: Lanes>(a: Point<F>) -> F {
+    a[0].abs().max(a[1].abs()).max(a[2].abs())
+}
+
+/// Normal of the plane through the origin, p and q, and the bound on its products. p × q = p × (q - p) = q × (q - p):
+/// the shorter of the two keeps the rounding small beside the edge and not beside the distance.
+#[inline(always)]
+fn edge<F: Lanes>(p: Point<F>, q: Point<F>) -> (Point<F>, F) {
+    let along = sub(q, p);
+    let (p_size, q_size) = (size(p), size(q));
+    let near: Point<F> = std::array::from_fn(|i| F::where_less(q_size, p_size, q[i], p[i]));
+    let bound = q_size
+        .min(p_size)
+        .mul(size(along))
+        .mul(F::splat(SLACK))
+        .add(F::splat(UNDERFLOW));
+    (cross(near, along), bound)
+}
+
+/// Looks at a block from a point.
+#[inline(always)]
+pub(crate) fn see<F: Lanes>(block: &Block, origin: Vec3) -> Seen {
+    let from = [F::splat(origin.x), F::splat(origin.y), F::splat(origin.z)];
+    let corner = |k: usize| -> Point<F> {
+        sub(
+            std::array::from_fn(|axis| F::load(&block.corners[3 * k + axis])),
+            from,
+        )
+    };
+    let (a, b, c) = (corner(0), corner(1), corner(2));
+    let edges = [edge(b, c), edge(c, a), edge(a, b)];
+    let whole = dot(a, edges[0].0);
+    let whole_bound = size(a).mul(edges[0].1).add(F::splat(UNDERFLOW));
+    let sure = whole.abs().above(whole_bound) & block.valid;
+    let mut turn = [0.0f32; BLOCK];
+    F::where_less(whole, F::splat(0.0), F::splat(-1.0), F::splat(1.0)).store(&mut turn);
+    if sure != (1 << BLOCK) - 1 {
+        settle(block, origin, sure, &mut turn);
+    }
+    let mut seen = Seen::NOTHING;
+    let turn = F::load(&turn);
+    for (k, (normal, bound)) in edges.into_iter().enumerate() {
+        for axis in 0..3 {
+            normal[axis]
+                .mul(turn)
+                .store(&mut seen.normals[3 * k + axis]);
+        }
+        // Where nothing can be hit the bound is -1 and the normal 0: never a candidate.
+        F::where_less(turn.abs(), F::splat(0.5), F::splat(-1.0), bound).store(&mut seen.slack[k]);
+    }
+    seen
+}
+
+/// Decides exactly on which side the origin lies of the triangles that single precision left open.
+#[cold]
+#[inline(never)]
+fn settle(block: &Block, origin: Vec3, sure: u32, turn: &mut [f32; BLOCK]) {
+    for (lane, turn) in turn.iter_mut().enumerate() {
+        if block.valid >> lane & 1 == 0 {
+            *turn = 0.0;
+        } else if sure >> lane & 1 == 0 {
+            let [a, b, c] = block.corners(lane).map(|corner| corner - origin);
+            let whole = volume(a, b, c);
+            *turn = if whole == 0.0 {
+                0.0
+            } else {
+                whole.signum() as f32
+            };
+        }
+    }
+}
+
+/// Which triangles of a block one direction may meet, and which of those beyond doubt; components up to 1.
+#[inline(always)]
+pub(crate) fn candidates<F: Lanes>(seen: &Seen, direction: Vec3) -> (u32, u32) {
+    let d = [
+        F::splat(direction.x),
+        F::splat(direction.y),
+        F::splat(direction.z),
+    ];
+    let zero = F::splat(0.0);
+    let (mut out, mut sure) = (0, u32::MAX);
+    for k in 0..3 {
+        let normal = std::array::from_fn(|axis| F::load(&seen.normals[3 * k + axis]));
+        let product = dot(d, normal);
+        let slack = F::load(&seen.slack[k]);
+        out |= zero.above(product.add(slack));
+        sure &= product.sub(slack).above(zero);
+    }
+    let open = !out & ((1 << BLOCK) - 1);
+    (open, open & sure)
+}

@@ -1,0 +1,287 @@
+//! Builds the tree: obvhs makes a binary one, which is folded into nodes of eight and blocks of four.
+
+use crate::tree::{BLOCK, Block, Child, Node, Tree, WIDTH, traceable};
+use glam::{Vec3, Vec3A};
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2_from_tris;
+use obvhs::{BvhBuildParams, triangle::Triangle};
+use std::time::Duration;
+
+/// What testing a block costs against a step through a binary node: at once, and per triangle.
+const BLOCK_COST: f32 = 0.9;
+const TRIANGLE_COST: f32 = 0.35;
+const NODE_COST: f32 = 0.6;
+
+/// Largest number of references per triangle that splitting large triangles may make.
+const MOST_SPLITS: usize = 3;
+
+/// The triangles that can be hit, with their numbers in the input.
+struct Soup {
+    triangles: Vec<Triangle>,
+    numbers: Vec<u32>,
+}
+
+impl Soup {
+    fn gather(positions: &[Vec3], indices: &[[u32; 3]]) -> Soup {
+        let mut soup = Soup {
+            triangles: Vec::with_capacity(indices.len()),
+            numbers: Vec::with_capacity(indices.len()),
+        };
+        for (number, corners) in indices.iter().enumerate() {
+            let corner = |k: usize| {
+                positions
+                    .get(corners[k] as usize)
+                    .copied()
+                    .unwrap_or(Vec3::NAN)
+            };
+            let corners = [corner(0), corner(1), corner(2)];
+            if traceable(corners) {
+                let [v0, v1, v2] = corners.map(Vec3A::from);
+                soup.triangles.push(Triangle { v0, v1, v2 });
+                soup.numbers.push(number as u32);
+            }
+        }
+        soup
+    }
+}
+
+/// Builds the tree over the triangles that can be hit; `masked` is empty or says which of them ask the filter.
+pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]], masked: &[bool]) -> Tree {
+    let soup = Soup::gather(positions, indices);
+    if soup.triangles.is_empty() {
+        return Tree::default();
+    }
+    let binary = binary_tree(&soup.triangles);
+    let costs = Costs::of(&binary);
+    let mut fold = Fold {
+        binary: &binary,
+        costs,
+        soup: &soup,
+        masked,
+        tree: Tree::default(),
+    };
+    fold.run();
+    let mut tree = fold.tree;
+    tree.stack_need = stack_need(&tree.nodes);
+    let size = |t: &Triangle| t.v0.abs().max(t.v1.abs()).max(t.v2.abs()).max_element();
+    tree.reach = soup.triangles.iter().map(size).fold(0.0, f32::max);
+    tree
+}
+
+/// One triangle per leaf: which triangles share a block is decided here, by what a block costs.
+fn binary_tree(triangles: &[Triangle]) -> Bvh2 {
+    let mut settings = BvhBuildParams::very_slow_build();
+    settings.max_prims_per_leaf = 1;
+    settings.post_collapse_reinsertion_batch_ratio_multiplier = 0.0;
+    let mut unused = Duration::ZERO;
+    let split = build_bvh2_from_tris(triangles, settings, &mut unused);
+    if split.primitive_indices.len() <= MOST_SPLITS * triangles.len() + 64 {
+        return split;
+    }
+    settings.pre_split = false;
+    build_bvh2_from_tris(triangles, settings, &mut unused)
+}
+
+/// Expected cost of each binary subtree and how many references it holds.
+struct Costs {
+    cost: Vec<f32>,
+    count: Vec<u32>,
+}
+
+impl Costs {
+    fn of(binary: &Bvh2) -> Costs {
+        let n = binary.nodes.len();
+        let mut costs = Costs {
+            cost: vec![0.0; n],
+            count: vec![0; n],
+        };
+        for index in children_first(binary) {
+            let node = &binary.nodes[index];
+            let area = node.aabb().half_area();
+            let leaf = |count: u32| area * (BLOCK_COST + TRIANGLE_COST * count as f32);
+            if node.is_leaf() {
+                costs.count[index] = node.prim_count;
+                costs.cost[index] = leaf(node.prim_count);
+                continue;
+            }
+            let (left, right) = (node.first_index as usize, node.first_index as usize + 1);
+            let count = costs.count[left] + costs.count[right];
+            let inner = area * NODE_COST + costs.cost[left] + costs.cost[right];
+            let one_block = count as usize <= BLOCK && leaf(count) <= inner;
+            costs.count[index] = count;
+            costs.cost[index] = if one_block { leaf(count) } else { inner };
+        }
+        costs
+    }
+
+    /// Whether a subtree is cheapest as one block.
+    fn is_block(&self, binary: &Bvh2, index: usize) -> bool {
+        let node = &binary.nodes[index];
+        let area = node.aabb().half_area();
+        let count = self.count[index];
+        let leaf = area * (BLOCK_COST + TRIANGLE_COST * count as f32);
+        node.is_leaf() || (count as usize <= BLOCK && leaf <= self.cost[index])
+    }
+}
+
+/// Node indices so that children come before their parents.
+fn children_first(binary: &Bvh2) -> Vec<usize> {
+    let mut found = Vec::with_capacity(binary.nodes.len());
+    let mut open = vec![0usize];
+    while let Some(index) = open.pop() {
+        found.push(index);
+        let node = &binary.nodes[index];
+        if !node.is_leaf() {
+            open.push(node.first_index as usize);
+            open.push(node.first_index as usize + 1);
+        }
+    }
+    found.reverse();
+    found
+}
+
+/// The folding of a binary tree into the wide one.
+struct Fold<'a> {
+    binary: &'a Bvh2,
+    costs: Costs,
+    soup: &'a Soup,
+    masked: &'a [bool],
+    tree: Tree,
+}
+
+impl Fold<'_> {
+    fn run(&mut self) {
+        self.tree.nodes.push(Node::EMPTY);
+        let mut open = vec![(0usize, 0usize)];
+        while let Some((wide, binary)) = open.pop() {
+            let members = self.members(binary);
+            for (slot, member) in self.slots(binary, &members) {
+                let child = if self.costs.is_block(self.binary, member) {
+                    self.add_block(member)
+                } else {
+                    self.tree.nodes.push(Node::EMPTY);
+                    let index = self.tree.nodes.len() - 1;
+                    open.push((index, member));
+                    Child::node(index)
+                };
+                let aabb = *self.binary.nodes[member].aabb();
+                let node = &mut self.tree.nodes[wide];
+                node.children[slot] = child;
+                for axis in 0..3 {
+                    node.bounds[axis][slot] = aabb.min[axis];
+                    node.bounds[axis + 3][slot] = aabb.max[axis];
+                }
+            }
+        }
+    }
+
+    /// The up to eight subtrees that become a node's children: the largest is opened until there are eight.
+    fn members(&self, binary: usize) -> Vec<usize> {
+        let mut members = vec![binary];
+        while members.len() < WIDTH {
+            let open = members
+                .iter()
+                .enumerate()
+                .filter(|&(_, &m)| !self.costs.is_block(self.binary, m));
+            let area = |m: usize| self.binary.nodes[m].aabb().half_area();
+            let Some((place, &member)) = open.max_by(|a, b| area(*a.1).total_cmp(&area(*b.1)))
+            else {
+                break;
+            };
+            let first = self.binary.nodes[member].first_index as usize;
+            members[place] = first;
+            members.push(first + 1);
+        }
+        members
+    }
+
+    /// Puts each member in the slot whose corner of the box it is nearest, best fits first: then slot XOR octant of
+    /// a ray rises roughly from near to far.
+    fn slots(&self, binary: usize, members: &[usize]) -> Vec<(usize, usize)> {
+        let centre = self.binary.nodes[binary].aabb().center();
+        let mut fits = Vec::with_capacity(WIDTH * members.len());
+        for &member in members {
+            let offset = self.binary.nodes[member].aabb().center() - centre;
+            for slot in 0..WIDTH {
+                let side = |axis: usize| {
+                    if slot >> axis & 1 == 1 {
+                        offset[axis]
+                    } else {
+                        -offset[axis]
+                    }
+                };
+                fits.push((side(0) + side(1) + side(2), slot, member));
+            }
+        }
+        fits.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let mut placed: Vec<(usize, usize)> = Vec::with_capacity(members.len());
+        for (_, slot, member) in fits {
+            if placed.iter().all(|&(s, m)| s != slot && m != member) {
+                placed.push((slot, member));
+            }
+        }
+        placed
+    }
+
+    /// Collects a subtree of at most four references into a block.
+    fn add_block(&mut self, binary: usize) -> Child {
+        let mut members = Vec::with_capacity(BLOCK);
+        let mut open = vec![binary];
+        while let Some(index) = open.pop() {
+            let node = &self.binary.nodes[index];
+            if node.is_leaf() {
+                let first = node.first_index as usize;
+                members.extend_from_slice(
+                    &self.binary.primitive_indices[first..first + node.prim_count as usize],
+                );
+            } else {
+                open.extend([node.first_index as usize, node.first_index as usize + 1]);
+            }
+        }
+        // Two parts of a split triangle in one block are one triangle.
+        members.sort_unstable();
+        members.dedup();
+        self.tree.blocks.push(self.block(&members));
+        Child::block(self.tree.blocks.len() - 1)
+    }
+
+    fn block(&self, members: &[u32]) -> Block {
+        let mut block = Block {
+            corners: [[0.0; BLOCK]; 9],
+            triangles: [u32::MAX; BLOCK],
+            valid: 0,
+            masked: 0,
+        };
+        for lane in 0..BLOCK {
+            // Lanes left over repeat the first triangle, so that their arithmetic takes no special path.
+            let member = *members.get(lane).unwrap_or(&members[0]) as usize;
+            let triangle = &self.soup.triangles[member];
+            for (k, corner) in [triangle.v0, triangle.v1, triangle.v2]
+                .into_iter()
+                .enumerate()
+            {
+                for axis in 0..3 {
+                    block.corners[3 * k + axis][lane] = corner[axis];
+                }
+            }
+            if lane < members.len() {
+                let number = self.soup.numbers[member];
+                block.triangles[lane] = number;
+                block.valid |= 1 << lane;
+                block.masked |= u32::from(self.masked.get(number as usize) == Some(&true)) << lane;
+            }
+        }
+        block
+    }
+}
+
+/// Entries that a walk can have waiting at once; children stand after their parents.
+fn stack_need(nodes: &[Node]) -> usize {
+    let mut need = vec![0usize; nodes.len()];
+    for (index, node) in nodes.iter().enumerate().rev() {
+        let inner = node.children.iter().filter(|c| c.as_block().is_none());
+        let deepest = inner.map(|c| need[c.index()]).max().unwrap_or(0);
+        need[index] = WIDTH + deepest;
+    }
+    need.first().copied().unwrap_or(0) + 1
+}

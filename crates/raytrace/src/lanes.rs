@@ -1,0 +1,111 @@
+//! Numbers side by side: what the kernels ask of a processor, and the portable form of it.
+
+/// A row of single-precision numbers on which every operation acts lane by lane.
+///
+/// Each operation rounds as IEEE 754 says and none fuses two, so that all implementations give the same bits.
+pub(crate) trait Lanes: Copy {
+    fn splat(value: f32) -> Self;
+    /// The first `N` numbers of a slice.
+    fn load(from: &[f32]) -> Self;
+    /// Into the first `N` numbers of a slice.
+    fn store(self, to: &mut [f32]);
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    /// The smaller; `other` where either is not a number.
+    fn min(self, other: Self) -> Self;
+    /// The larger; `other` where either is not a number.
+    fn max(self, other: Self) -> Self;
+    fn abs(self) -> Self;
+    /// One bit per lane: self > other; clear where either is not a number.
+    fn above(self, other: Self) -> u32;
+    /// `yes` where a < b, else `no`.
+    fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self;
+}
+
+/// What a path provides: rows of four for triangles, of eight for boxes, and as wide as pays for rays.
+pub(crate) trait Path {
+    type Four: Lanes;
+    type Eight: Lanes;
+    type Rays: Lanes;
+}
+
+/// Plain arrays, which any processor can do.
+#[derive(Clone, Copy)]
+#[repr(align(16))]
+pub(crate) struct Row<const N: usize>([f32; N]);
+
+impl<const N: usize> Row<N> {
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        Row(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    }
+}
+
+impl<const N: usize> Lanes for Row<N> {
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Row([value; N])
+    }
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        Row(std::array::from_fn(|i| from[i]))
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        to[..N].copy_from_slice(&self.0);
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Row(self.0.map(f32::abs))
+    }
+
+    #[inline(always)]
+    fn above(self, other: Self) -> u32 {
+        (0..N).fold(0, |mask, i| mask | u32::from(self.0[i] > other.0[i]) << i)
+    }
+
+    #[inline(always)]
+    fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self {
+        Row(std::array::from_fn(|i| {
+            if a.0[i] < b.0[i] { yes.0[i] } else { no.0[i] }
+        }))
+    }
+}
+
+/// The path of processors without wide registers.
+pub(crate) struct Portable;
+
+impl Path for Portable {
+    type Four = Row<4>;
+    type Eight = Row<8>;
+    type Rays = Row<8>;
+}

@@ -1,0 +1,255 @@
+//! One ray through the tree.
+
+use crate::block::{Seen, candidates, see};
+use crate::lanes::{Lanes, Path};
+use crate::ray::{Hit, Line, meet};
+use crate::tree::{Block, Child, Node, Tree, WIDTH};
+use glam::Vec3;
+
+/// Whether a masked triangle is solid at a point (triangle, u, v).
+pub(crate) type Solid<'a> = &'a dyn Fn(u32, f32, f32) -> bool;
+
+/// A ray leaves a box at most this much later than single precision says: four roundings, doubled.
+pub(crate) const LATER: f32 = 1.0 + 8.0 * f32::EPSILON;
+
+/// Boxes are widened by this part of the largest coordinate in play. It covers the rounding of corners translated to
+/// the origin (2^-24 of their distance) and of the boxes of split triangles (a few units of 2^-24).
+const WIDEN: f32 = 16.0 / 16_777_216.0;
+
+/// `PERMUTED[octant][mask]` has bit `i ^ octant` for each bit `i` of the mask.
+pub(crate) static PERMUTED: [[u8; 256]; 8] = permuted();
+
+const fn permuted() -> [[u8; 256]; 8] {
+    let mut table = [[0u8; 256]; 8];
+    let mut octant = 0;
+    while octant < 8 {
+        let mut mask = 0;
+        while mask < 256 {
+            let mut bit = 0;
+            while bit < 8 {
+                if mask >> bit & 1 == 1 {
+                    table[octant][mask] |= 1 << (bit ^ octant);
+                }
+                bit += 1;
+            }
+            mask += 1;
+        }
+        octant += 1;
+    }
+    table
+}
+
+/// The origin moved apart for near and far planes, so that every box counts as a little wider.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Apart {
+    pub(crate) near: Vec3,
+    pub(crate) far: Vec3,
+}
+
+impl Apart {
+    #[inline(always)]
+    pub(crate) fn new(tree: &Tree, origin: Vec3, octant: usize) -> Apart {
+        let widen = WIDEN * (tree.reach + origin.abs().max_element());
+        let toward = |axis: usize| {
+            if octant >> axis & 1 == 1 {
+                -widen
+            } else {
+                widen
+            }
+        };
+        let step = Vec3::new(toward(0), toward(1), toward(2));
+        Apart {
+            near: origin + step,
+            far: origin - step,
+        }
+    }
+}
+
+/// Rows of `bounds` that a ray of an octant enters and leaves through.
+#[inline(always)]
+pub(crate) fn planes(octant: usize) -> ([usize; 3], [usize; 3]) {
+    let entry = |axis: usize| axis + 3 * (octant >> axis & 1);
+    let exit = |axis: usize| axis + 3 * (1 - (octant >> axis & 1));
+    ([entry(0), entry(1), entry(2)], [exit(0), exit(1), exit(2)])
+}
+
+/// One ray with what its box tests need.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Walker {
+    pub(crate) line: Line,
+    pub(crate) octant: usize,
+    pub(crate) apart: Apart,
+    /// Range of the parameter along the scaled direction.
+    pub(crate) start: f32,
+    pub(crate) end: f32,
+}
+
+impl Walker {
+    #[inline(always)]
+    pub(crate) fn new(tree: &Tree, line: Line) -> Walker {
+        let octant = line.octant();
+        let apart = Apart::new(tree, line.origin, octant);
+        // Dividing by a power of two is exact; the start is left at zero, the exact test minds t_min.
+        Walker {
+            line,
+            octant,
+            apart,
+            start: 0.0,
+            end: line.t_max / line.scale,
+        }
+    }
+
+    /// Which children's boxes the ray meets before `end`.
+    #[inline(always)]
+    pub(crate) fn boxes<E: Lanes>(&self, node: &Node, end: f32) -> u32 {
+        let (entry, exit) = planes(self.octant);
+        let mut near = E::splat(self.start);
+        let mut far = E::splat(end);
+        for axis in 0..3 {
+            let inverse = E::splat(self.line.inverse[axis]);
+            let enter = E::load(&node.bounds[entry[axis]])
+                .sub(E::splat(self.apart.near[axis]))
+                .mul(inverse);
+            let leave = E::load(&node.bounds[exit[axis]])
+                .sub(E::splat(self.apart.far[axis]))
+                .mul(inverse);
+            // Not-a-number (a plane through the origin, a direction within it) leaves the range as it is.
+            near = enter.max(near);
+            far = leave.min(far);
+        }
+        !near.above(far.mul(E::splat(LATER))) & ((1 << WIDTH) - 1)
+    }
+}
+
+/// Whether anything blocks a ray, from a child of the tree on down.
+#[inline(always)]
+pub(crate) fn blocked<P: Path>(
+    tree: &Tree,
+    walker: &Walker,
+    from: Child,
+    stack: &mut Vec<u32>,
+    solid: Solid<'_>,
+    mut view: impl FnMut(usize) -> Seen,
+) -> Option<(usize, usize)> {
+    let base = stack.len();
+    let mut child = from;
+    loop {
+        if let Some(index) = child.as_block() {
+            let seen = view(index);
+            let found = blocked_by::<P>(&tree.blocks[index], &seen, &walker.line, solid);
+            if let Some(lane) = found {
+                stack.truncate(base);
+                return Some((index, lane));
+            }
+        } else {
+            let node = &tree.nodes[child.index()];
+            let mask = walker.boxes::<P::Eight>(node, walker.end);
+            push(stack, node, mask, walker.octant);
+        }
+        if stack.len() == base {
+            return None;
+        }
+        child = Child::from_bits(stack.pop()?);
+    }
+}
+
+/// Puts the children of a mask on the stack, the farthest first.
+#[inline(always)]
+fn push(stack: &mut Vec<u32>, node: &Node, mask: u32, octant: usize) {
+    let mut order = PERMUTED[octant][mask as usize];
+    while order != 0 {
+        let last = 7 - order.leading_zeros() as usize;
+        order &= !(1 << last);
+        stack.push(node.children[last ^ octant].bits());
+    }
+}
+
+/// The lane of a triangle of a block that blocks a ray.
+#[inline(always)]
+pub(crate) fn blocked_by<P: Path>(
+    block: &Block,
+    seen: &Seen,
+    line: &Line,
+    solid: Solid<'_>,
+) -> Option<usize> {
+    let (mut open, sure) = candidates::<P::Four>(seen, line.direction);
+    let sure = if line.endless() {
+        sure & !block.masked
+    } else {
+        0
+    };
+    if sure != 0 {
+        return Some(sure.trailing_zeros() as usize);
+    }
+    while open != 0 {
+        let lane = open.trailing_zeros() as usize;
+        open &= open - 1;
+        if blocked_for_sure(block, lane, line, solid) {
+            return Some(lane);
+        }
+    }
+    None
+}
+
+/// The exact answer for one triangle.
+#[cold]
+#[inline(never)]
+pub(crate) fn blocked_for_sure(block: &Block, lane: usize, line: &Line, solid: Solid<'_>) -> bool {
+    let Some(hit) = meet(line, block.corners(lane)) else {
+        return false;
+    };
+    block.masked >> lane & 1 == 0 || solid(block.triangles[lane], hit.u, hit.v)
+}
+
+/// The nearest hit of a ray; of equally near ones that of the smallest triangle number.
+#[inline(always)]
+pub(crate) fn nearest<P: Path>(
+    tree: &Tree,
+    walker: &Walker,
+    stack: &mut Vec<u32>,
+    solid: Solid<'_>,
+) -> Option<Hit> {
+    let base = stack.len();
+    let mut best: Option<Hit> = None;
+    let mut child = Child::node(0);
+    let mut end = walker.end;
+    loop {
+        if let Some(index) = child.as_block() {
+            let block = &tree.blocks[index];
+            let seen = see::<P::Four>(block, walker.line.origin);
+            let (mut open, _) = candidates::<P::Four>(&seen, walker.line.direction);
+            while open != 0 {
+                let lane = open.trailing_zeros() as usize;
+                open &= open - 1;
+                if let Some(hit) = nearer(block, lane, &walker.line, best.as_ref(), solid) {
+                    end = hit.t / walker.line.scale;
+                    best = Some(hit);
+                }
+            }
+        } else {
+            let node = &tree.nodes[child.index()];
+            let mask = walker.boxes::<P::Eight>(node, end);
+            push(stack, node, mask, walker.octant);
+        }
+        if stack.len() == base {
+            return best;
+        }
+        child = Child::from_bits(stack.pop()?);
+    }
+}
+
+/// The hit of one triangle if it beats the best so far.
+#[inline(never)]
+fn nearer(
+    block: &Block,
+    lane: usize,
+    line: &Line,
+    best: Option<&Hit>,
+    solid: Solid<'_>,
+) -> Option<Hit> {
+    let mut hit = meet(line, block.corners(lane))?;
+    hit.triangle = block.triangles[lane];
+    let beats = best.is_none_or(|best| (hit.t, hit.triangle) < (best.t, best.triangle));
+    let counts = beats && (block.masked >> lane & 1 == 0 || solid(hit.triangle, hit.u, hit.v));
+    counts.then_some(hit)
+}
