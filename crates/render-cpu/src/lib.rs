@@ -1,1 +1,30 @@
-//! Evaluates a .prt file on the CPU.
+//! Evaluates a .prt file on the CPU: always works, no driver needed.
+//!
+//! [`render`] draws one picture; a [`Renderer`] draws many of one scene under one probe. The model of light, materials and
+//! pictures stands in docs/shading.md; the GPU renderer follows the same one.
+
+mod bins;
+mod bloom;
+mod brdf;
+mod check;
+mod clip;
+mod error;
+mod facet;
+mod frame;
+mod image;
+mod light;
+mod raster;
+mod renderer;
+mod shade;
+mod texture;
+mod tile;
+mod tone;
+mod view;
+
+pub use brdf::environment_brdf;
+pub use error::Error;
+pub use frame::{Frame, MAX_SIZE, MAX_SUPERSAMPLE, Tonemap};
+pub use image::Image;
+pub use light::vertex_radiance;
+pub use renderer::{REFLECTION_LEVELS, REFLECTION_WIDTH, Renderer, render};
+pub use tone::{curve, srgb_decode, srgb_encode};

@@ -1,0 +1,185 @@
+//! A baked scene under a probe, ready to draw frames.
+
+use crate::bins::{Bins, Tiles};
+use crate::image::Image;
+use crate::light::vertex_radiance;
+use crate::raster::{Piece, Window, pieces};
+use crate::shade::Shader;
+use crate::texture::SrgbTable;
+use crate::tile::{Canvas, Stage};
+use crate::tone::Quantiser;
+use crate::view::View;
+use crate::{Error, Frame, bloom, check};
+use coeff_io::{AlphaMode, Material, Prt};
+use glam::{DVec3, Vec3};
+use probe_io::Environment;
+use probe_io::reflection::Reflection;
+use rayon::prelude::*;
+
+/// Roughness levels of the prefiltered probe.
+pub const REFLECTION_LEVELS: usize = 8;
+/// Columns of each level of the prefiltered probe.
+pub const REFLECTION_WIDTH: usize = 256;
+/// Marks triangles that no mesh holds; they are not drawn.
+const NO_MATERIAL: u32 = u32::MAX;
+/// Triangles per parallel piece of work.
+const CHUNK: usize = 4096;
+
+/// A baked scene under a probe: what is the same for all frames is done once.
+#[derive(Debug)]
+pub struct Renderer<'a> {
+    prt: &'a Prt,
+    environment: &'a Environment,
+    /// Coefficients of the light as the probe holds it.
+    light: sh_math::Rgb,
+    reflection: Option<Reflection>,
+    srgb: SrgbTable,
+    quantiser: Quantiser,
+    /// Material of each triangle.
+    materials: Vec<u32>,
+    /// Length of the diagonal of the box around all positions.
+    diagonal: f64,
+}
+
+/// Draws one frame: [`Renderer::new`] and [`Renderer::draw`].
+///
+/// # Errors
+/// As these.
+pub fn render(prt: &Prt, environment: &Environment, frame: &Frame) -> Result<Image, Error> {
+    frame.check()?;
+    Renderer::new(prt, environment)?.draw(frame)
+}
+
+impl<'a> Renderer<'a> {
+    /// Projects the probe and, where a material calls for reflections, prefilters it.
+    ///
+    /// # Errors
+    /// [`Error::Prt`] where the parts of `prt` do not fit each other.
+    pub fn new(prt: &'a Prt, environment: &'a Environment) -> Result<Self, Error> {
+        check::check(prt)?;
+        let bands = sh_math::Bands::new(prt.transfer.bands)
+            .ok_or_else(|| Error::Prt(format!("a transfer of {} bands, which is not supported", prt.transfer.bands)))?;
+        let shines = prt.meshes.iter().any(|mesh| prt.materials[mesh.material as usize].specular);
+        Ok(Self {
+            prt,
+            environment,
+            light: sh_math::project(bands, environment.samples()),
+            reflection: shines.then(|| Reflection::build(environment, REFLECTION_LEVELS, REFLECTION_WIDTH)),
+            srgb: SrgbTable::new(),
+            quantiser: Quantiser::new(),
+            materials: materials(prt),
+            diagonal: diagonal(&prt.geometry.positions),
+        })
+    }
+
+    /// Draws one frame as docs/shading.md says.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where a field of `frame` is out of range.
+    pub fn draw(&self, frame: &Frame) -> Result<Image, Error> {
+        frame.check()?;
+        let view = View::new(frame, self.diagonal);
+        let rotation = frame.rotation.normalize();
+        let radiance = vertex_radiance(&self.prt.transfer, &self.light.rotated(rotation).values);
+        let projected: Vec<DVec3> = self.prt.geometry.positions.par_iter().map(|&p| view.project(p)).collect();
+        let shader = Shader {
+            prt: self.prt,
+            environment: self.environment,
+            reflection: self.reflection.as_ref(),
+            srgb: &self.srgb,
+            radiance: &radiance,
+            light_from_world: rotation.inverse(),
+            sky: frame.sky,
+        };
+        let stage = Stage { shader, view: &view, projected: &projected, materials: &self.materials };
+        let mut linear = self.tiles(&stage, frame);
+        let exposure = libm::exp2f(frame.exposure_ev);
+        linear.par_iter_mut().for_each(|pixel| *pixel = pixel.map(|x| x * exposure));
+        if frame.bloom > 0.0 {
+            bloom::apply(frame.width as usize, frame.height as usize, &mut linear, frame.bloom);
+        }
+        Ok(Image::new(frame.width, frame.height, linear, frame.tonemap, &self.quantiser))
+    }
+
+    /// The linear picture before exposure, drawn tile by tile.
+    fn tiles(&self, stage: &Stage<'_>, frame: &Frame) -> Vec<[f32; 3]> {
+        let opaque = self.pieces(stage, |material| !lets_through(material));
+        let blended = self.back_to_front(stage, self.pieces(stage, lets_through));
+        let tiles = Tiles::new(stage.view.samples, frame.supersample);
+        let (opaque_bins, blended_bins) = (Bins::new(&tiles, &opaque), Bins::new(&tiles, &blended));
+        let drawn: Vec<Vec<[f32; 3]>> = (0..tiles.count())
+            .into_par_iter()
+            .map_init(Canvas::default, |canvas, tile| {
+                let window = tiles.window(tile);
+                let behind = opaque_bins.of(tile).iter().map(|&i| &opaque[i as usize]);
+                let before = blended_bins.of(tile).iter().map(|&i| &blended[i as usize]);
+                stage.draw(&window, behind, before, canvas);
+                canvas.pixels(&window, frame.supersample)
+            })
+            .collect();
+        let mut picture = vec![[0.0; 3]; frame.width as usize * frame.height as usize];
+        for (tile, pixels) in drawn.iter().enumerate() {
+            place(&mut picture, frame, &tiles.window(tile), pixels);
+        }
+        picture
+    }
+
+    /// The pieces of all triangles whose material is `wanted`, in the order of the triangles.
+    fn pieces(&self, stage: &Stage<'_>, wanted: impl Fn(&Material) -> bool + Sync) -> Vec<Piece> {
+        let wanted: Vec<bool> = self.prt.materials.iter().map(wanted).collect();
+        let triangles = &self.prt.geometry.triangles;
+        let chunks: Vec<Vec<Piece>> = (triangles.par_chunks(CHUNK).enumerate())
+            .map(|(chunk, triangles)| {
+                let mut out = Vec::new();
+                for (i, corners) in (chunk * CHUNK..).zip(triangles) {
+                    if wanted.get(self.materials[i] as usize) == Some(&true) {
+                        pieces(i as u32, corners.map(|v| stage.projected[v as usize]), stage.view, &mut out);
+                    }
+                }
+                out
+            })
+            .collect();
+        chunks.concat()
+    }
+
+    /// Sorts pieces by the mean depth of their triangles' corners, farthest first.
+    fn back_to_front(&self, stage: &Stage<'_>, mut pieces: Vec<Piece>) -> Vec<Piece> {
+        let depth = |piece: &Piece| {
+            let corners = self.prt.geometry.triangles[piece.triangle as usize];
+            corners.iter().map(|&v| stage.projected[v as usize].z).sum::<f64>()
+        };
+        // The sort is stable: of equals the lower index stays first.
+        pieces.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+        pieces
+    }
+}
+
+/// Whether a surface shows what lies behind it.
+fn lets_through(material: &Material) -> bool {
+    material.alpha == AlphaMode::Blend || material.transmission > 0.0
+}
+
+fn materials(prt: &Prt) -> Vec<u32> {
+    let mut out = vec![NO_MATERIAL; prt.geometry.triangles.len()];
+    for mesh in &prt.meshes {
+        let first = mesh.first_triangle as usize;
+        out[first..first + mesh.triangles as usize].fill(mesh.material);
+    }
+    out
+}
+
+fn diagonal(positions: &[[f32; 3]]) -> f64 {
+    let first = positions.first().map_or(Vec3::ZERO, |&p| Vec3::from(p));
+    let (least, most) =
+        positions.iter().map(|&p| Vec3::from(p)).fold((first, first), |(least, most), p| (least.min(p), most.max(p)));
+    (most.as_dvec3() - least.as_dvec3()).length()
+}
+
+/// Copies the pixels of a tile to their place in the picture.
+fn place(picture: &mut [[f32; 3]], frame: &Frame, window: &Window, pixels: &[[f32; 3]]) {
+    let s = frame.supersample;
+    let (width, left) = (window.width() / s as usize, (window.columns[0] / s) as usize);
+    for (row, pixels) in ((window.rows[0] / s) as usize..).zip(pixels.chunks_exact(width)) {
+        picture[row * frame.width as usize + left..][..width].copy_from_slice(pixels);
+    }
+}

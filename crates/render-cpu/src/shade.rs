@@ -1,0 +1,165 @@
+//! The colour of a surface at one sample: docs/shading.md, "Surface, per sample".
+
+use crate::brdf::reflectance;
+use crate::texture::{Encoding, SrgbTable, coordinates, read};
+use coeff_io::{AlphaMode, Material, Prt, TextureSlot};
+use glam::{Quat, Vec3, Vec4};
+use probe_io::Environment;
+use probe_io::reflection::Reflection;
+
+/// Everything that the colour of a sample depends on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shader<'a> {
+    pub(crate) prt: &'a Prt,
+    pub(crate) environment: &'a Environment,
+    /// The prefiltered probe; present where a material calls for it.
+    pub(crate) reflection: Option<&'a Reflection>,
+    pub(crate) srgb: &'a SrgbTable,
+    /// Diffuse radiance for albedo 1, per vertex.
+    pub(crate) radiance: &'a [Vec3],
+    pub(crate) light_from_world: Quat,
+    pub(crate) sky: bool,
+}
+
+/// A place on a triangle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub(crate) material: &'a Material,
+    pub(crate) vertices: [usize; 3],
+    pub(crate) weights: [f32; 3],
+    /// From the eye, not unit.
+    pub(crate) direction: Vec3,
+}
+
+/// What a surface sends to the eye, and how much of what lies behind it covers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Surface {
+    /// Light that the body of the surface scatters.
+    pub(crate) diffuse: Vec3,
+    /// Light that the surface mirrors or emits.
+    pub(crate) gloss: Vec3,
+    /// Share of the sample that holds the surface.
+    pub(crate) coverage: f32,
+    /// Share of what lies behind that is hidden.
+    pub(crate) opacity: f32,
+}
+
+impl Surface {
+    /// The sample's colour over what lies behind.
+    pub(crate) fn over(&self, behind: Vec3) -> Vec3 {
+        self.diffuse * self.opacity + self.gloss * self.coverage + behind * (1.0 - self.opacity)
+    }
+}
+
+impl Place<'_> {
+    /// A vertex attribute at this place.
+    fn interpolate<const N: usize>(&self, values: &[[f32; N]]) -> [f32; N] {
+        let [a, b, c] = self.vertices.map(|v| values[v]);
+        let [wa, wb, wc] = self.weights;
+        std::array::from_fn(|k| a[k] * wa + b[k] * wb + c[k] * wc)
+    }
+}
+
+impl Shader<'_> {
+    /// Whether the surface is there: an alpha mask has holes.
+    pub(crate) fn exists(&self, place: &Place<'_>) -> bool {
+        match place.material.alpha {
+            AlphaMode::Mask(cutoff) => self.base(place).w >= cutoff,
+            AlphaMode::Opaque | AlphaMode::Blend => true,
+        }
+    }
+
+    /// The light that leaves a place towards the eye.
+    pub(crate) fn surface(&self, place: &Place<'_>) -> Surface {
+        let material = place.material;
+        let base = self.base(place);
+        let shine = self.texel(material.metallic_roughness_texture.as_ref(), place, Encoding::Linear);
+        let metallic = (material.metallic * shine.z).clamp(0.0, 1.0);
+        let roughness = (material.roughness * shine.y).clamp(0.0, 1.0);
+        let [a, b, c] = place.vertices.map(|v| self.radiance[v]);
+        let [wa, wb, wc] = place.weights;
+        let diffuse = (a * wa + b * wb + c * wc).max(Vec3::ZERO) * base.truncate() * (1.0 - metallic);
+        let glow = self.texel(material.emissive_texture.as_ref(), place, Encoding::Srgb(self.srgb)).truncate();
+        let emission = Vec3::from(material.emissive) * glow;
+        let specular = match self.reflection {
+            Some(reflection) if material.specular => {
+                self.specular(place, reflection, base.truncate(), metallic, roughness)
+            }
+            _ => Vec3::ZERO,
+        };
+        let coverage = if material.alpha == AlphaMode::Blend { base.w.clamp(0.0, 1.0) } else { 1.0 };
+        let opacity = coverage * (1.0 - material.transmission.clamp(0.0, 1.0));
+        Surface { diffuse, gloss: specular + emission, coverage, opacity }
+    }
+
+    /// What is seen along a world direction, not unit, where nothing stands.
+    pub(crate) fn sky(&self, direction: Vec3) -> Vec3 {
+        if self.sky {
+            Vec3::from(self.environment.radiance(self.light_from_world * direction.normalize()))
+        } else {
+            Vec3::ZERO
+        }
+    }
+
+    fn base(&self, place: &Place<'_>) -> Vec4 {
+        let factor = Vec4::from(place.material.base_color);
+        let texel = self.texel(place.material.base_color_texture.as_ref(), place, Encoding::Srgb(self.srgb));
+        let colors = &self.prt.geometry.colors;
+        let color = if colors.is_empty() { Vec4::ONE } else { Vec4::from(place.interpolate(colors)) };
+        factor * texel * color
+    }
+
+    /// A texture at a place; white where the material has none.
+    fn texel(&self, slot: Option<&TextureSlot>, place: &Place<'_>, encoding: Encoding<'_>) -> Vec4 {
+        slot.map_or(Vec4::ONE, |slot| {
+            let uv = coordinates(&self.prt.geometry, slot, place.vertices, place.weights);
+            read(&self.prt.textures[slot.texture as usize], slot, uv, encoding)
+        })
+    }
+
+    fn specular(&self, place: &Place<'_>, reflection: &Reflection, base: Vec3, metallic: f32, roughness: f32) -> Vec3 {
+        let normal = self.normal(place);
+        let to_eye = -place.direction.normalize();
+        let cosine = normal.dot(to_eye);
+        let mirrored = normal * (2.0 * cosine) - to_eye;
+        let arriving = Vec3::from(reflection.sample(self.light_from_world * mirrored, roughness));
+        arriving * reflectance(base, metallic, roughness, cosine.abs().min(1.0)) * self.occlusion(place)
+    }
+
+    fn occlusion(&self, place: &Place<'_>) -> f32 {
+        let openness = &self.prt.transfer.openness;
+        if openness.is_empty() {
+            return 1.0;
+        }
+        place.vertices.iter().zip(place.weights).map(|(&v, w)| openness[v] * w).sum::<f32>().clamp(0.0, 1.0)
+    }
+
+    /// The unit normal that mirrors: from the normal map where there is one.
+    fn normal(&self, place: &Place<'_>) -> Vec3 {
+        let geometry = &self.prt.geometry;
+        let smooth = Vec3::from(place.interpolate(&geometry.normals));
+        let bent = match &place.material.normal_texture {
+            Some(slot) if !geometry.tangents.is_empty() => {
+                let [x, y, z, w] = place.interpolate(&geometry.tangents);
+                let tangent = Vec3::new(x, y, z);
+                let bitangent = smooth.cross(tangent) * if w < 0.0 { -1.0 } else { 1.0 };
+                let map = self.texel(Some(slot), place, Encoding::Linear).truncate() * 2.0 - 1.0;
+                let scale = place.material.normal_scale;
+                tangent * (map.x * scale) + bitangent * (map.y * scale) + smooth * map.z
+            }
+            _ => smooth,
+        };
+        unit(bent).or_else(|| unit(smooth)).unwrap_or_else(|| self.geometric_normal(place))
+    }
+
+    fn geometric_normal(&self, place: &Place<'_>) -> Vec3 {
+        let [a, b, c] = place.vertices.map(|v| Vec3::from(self.prt.geometry.positions[v]));
+        unit((b - a).cross(c - a)).unwrap_or(Vec3::Y)
+    }
+}
+
+/// The direction of a vector that is long enough to have one.
+fn unit(v: Vec3) -> Option<Vec3> {
+    let length = v.length();
+    (length >= 1e-12 && length.is_finite()).then(|| v / length)
+}

@@ -1,0 +1,66 @@
+//! Tone curves and the encoding for the display.
+
+use crate::Tonemap;
+
+/// Scene-referred to display-referred, both linear; the result lies in [0, 1].
+///
+/// Reinhard et al. 2002 eq. (3) per channel; the filmic curve is Narkowicz' fit (2016) of the ACES reference curve.
+pub fn curve(tonemap: Tonemap, x: f32) -> f32 {
+    // `max` turns NaN into 0.
+    let x = x.max(0.0);
+    if x == f32::INFINITY {
+        return 1.0;
+    }
+    match tonemap {
+        Tonemap::None => x.min(1.0),
+        Tonemap::Reinhard => x / (1.0 + x),
+        // In f64, where the square of the largest f32 is finite.
+        Tonemap::Filmic => {
+            let x = f64::from(x);
+            ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).min(1.0) as f32
+        }
+    }
+}
+
+/// The sRGB value in [0, 1] of a linear one (IEC 61966-2-1).
+pub fn srgb_encode(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
+}
+
+/// The linear value in [0, 1] of an sRGB one (IEC 61966-2-1).
+pub fn srgb_decode(value: f64) -> f64 {
+    if value <= 0.040_45 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
+}
+
+/// Rounds linear display values to sRGB bytes without a power per pixel.
+#[derive(Debug, Clone)]
+pub(crate) struct Quantiser {
+    /// Least linear value of each byte but 0.
+    thresholds: Vec<f32>,
+}
+
+impl Quantiser {
+    pub(crate) fn new() -> Self {
+        Self { thresholds: (1..=255).map(|byte| srgb_decode((f64::from(byte) - 0.5) / 255.0) as f32).collect() }
+    }
+
+    /// The byte nearest to the sRGB value of a linear value in [0, 1].
+    pub(crate) fn byte(&self, linear: f32) -> u8 {
+        self.thresholds.partition_point(|&least| least <= linear) as u8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_the_rounded_srgb_values() {
+        let quantiser = Quantiser::new();
+        for i in 0..=10_000 {
+            let linear = i as f32 / 10_000.0;
+            let exact = (255.0 * srgb_encode(f64::from(linear)) + 0.5).floor();
+            assert_eq!(f64::from(quantiser.byte(linear)), exact, "at {linear}");
+        }
+    }
+}

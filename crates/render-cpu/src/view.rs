@@ -1,0 +1,89 @@
+//! From world space to the samples of a picture, and back.
+
+use crate::Frame;
+use glam::{DVec2, DVec3, Vec3};
+
+/// Ratio of the near distance to the diagonal of the scene.
+const NEAR_SHARE: f64 = 1e-4;
+
+/// A camera with the sample grid of one frame.
+///
+/// *Projective space* is (x, y, w): offsets to the right and up, divided by their tangents of half the angle of view, and the depth
+/// along the view. A point is at (x/w, y/w) in [-1, 1] on the picture, y up.
+#[derive(Debug, Clone)]
+pub(crate) struct View {
+    eye: DVec3,
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
+    tangent: DVec2,
+    /// Samples per row and column.
+    pub(crate) samples: [u32; 2],
+    /// Nothing nearer is drawn.
+    pub(crate) near: f64,
+}
+
+impl View {
+    /// The view of a frame that passed [`Frame::check`], of a scene with this diagonal.
+    pub(crate) fn new(frame: &Frame, diagonal: f64) -> Self {
+        let camera = &frame.camera;
+        let eye = vector(camera.eye);
+        let forward = (vector(camera.target) - eye).normalize();
+        let right = forward.cross(steady_up(forward, vector(camera.up))).normalize();
+        let tangent = libm::tan(f64::from(camera.vertical_fov) / 2.0);
+        let aspect = f64::from(frame.width) / f64::from(frame.height);
+        let extent = if diagonal > 0.0 && diagonal.is_finite() { diagonal } else { 1.0 };
+        Self {
+            eye,
+            right,
+            up: right.cross(forward),
+            forward,
+            tangent: DVec2::new(tangent * aspect, tangent),
+            samples: [frame.width * frame.supersample, frame.height * frame.supersample],
+            near: NEAR_SHARE * extent,
+        }
+    }
+
+    /// A world point in projective space.
+    pub(crate) fn project(&self, position: [f32; 3]) -> DVec3 {
+        let p = vector(position) - self.eye;
+        DVec3::new(p.dot(self.right) / self.tangent.x, p.dot(self.up) / self.tangent.y, p.dot(self.forward))
+    }
+
+    /// Where the centre of sample (column, row) lies on the picture: [-1, 1], y up.
+    pub(crate) fn centre(&self, column: u32, row: u32) -> DVec2 {
+        let [width, height] = self.samples.map(f64::from);
+        DVec2::new(2.0 * (f64::from(column) + 0.5) / width - 1.0, 1.0 - 2.0 * (f64::from(row) + 0.5) / height)
+    }
+
+    /// Column and row, with fractions, of a point in projective space before the eye.
+    pub(crate) fn sample(&self, point: DVec3) -> DVec2 {
+        let [width, height] = self.samples.map(f64::from);
+        DVec2::new((point.x / point.z * 0.5 + 0.5) * width, (0.5 - point.y / point.z * 0.5) * height)
+    }
+
+    /// The world direction, not unit, seen at a place on the picture.
+    pub(crate) fn direction(&self, centre: DVec2) -> Vec3 {
+        (self.forward + self.right * (centre.x * self.tangent.x) + self.up * (centre.y * self.tangent.y)).as_vec3()
+    }
+}
+
+/// `up`, or the axis least along `forward` where `up` is no help.
+fn steady_up(forward: DVec3, up: DVec3) -> DVec3 {
+    let unit = up.normalize_or_zero();
+    if forward.cross(unit).length() >= 1e-6 {
+        return unit;
+    }
+    let a = forward.abs();
+    if a.x <= a.y && a.x <= a.z {
+        DVec3::X
+    } else if a.y <= a.z {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    }
+}
+
+fn vector(v: [f32; 3]) -> DVec3 {
+    Vec3::from(v).as_dvec3()
+}
