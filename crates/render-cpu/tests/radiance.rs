@@ -89,7 +89,11 @@ fn more_bands_are_read_in_their_order() {
 #[test]
 fn a_white_furnace_is_one_everywhere() {
     let mut prt = wall(white());
-    add_triangles(&mut prt, white(), &quad(Vec3::new(0.3, 0.2, 1.0), Vec3::new(0.4, 0.1, 0.2), Vec3::new(0.0, 0.5, 0.3)));
+    add_triangles(
+        &mut prt,
+        white(),
+        &quad(Vec3::new(0.3, 0.2, 1.0), Vec3::new(0.4, 0.1, 0.2), Vec3::new(0.0, 0.5, 0.3)),
+    );
     let mut frame = Frame::plain(camera([0.5, 0.3, 3.0], [0.0; 3]), 64, 48);
     frame.supersample = 2;
     frame.bloom = 0.3;

@@ -8,18 +8,18 @@ use coeff_io::{
 use glam::Vec3;
 
 /// Y00.
-pub const Y0: f32 = 0.282_094_8;
+pub(crate) const Y0: f32 = 0.282_094_8;
 /// Y1m / coordinate.
-pub const Y1: f32 = 0.488_602_5;
+pub(crate) const Y1: f32 = 0.488_602_5;
 
 /// Two bands of the unshadowed transfer at a normal: factors 1 and 2/3 of the clamped cosine over pi.
-pub fn open_transfer(normal: Vec3) -> [f32; 4] {
+pub(crate) fn open_transfer(normal: Vec3) -> [f32; 4] {
     let first = Y1 * 2.0 / 3.0;
     [Y0, first * normal.y, first * normal.z, first * normal.x]
 }
 
 /// A white diffuse material.
-pub fn white() -> Material {
+pub(crate) fn white() -> Material {
     Material {
         name: "white".into(),
         base_color: [1.0; 4],
@@ -38,12 +38,12 @@ pub fn white() -> Material {
 }
 
 /// A view from `eye` to `target` of 60 degrees.
-pub fn camera(eye: [f32; 3], target: [f32; 3]) -> Camera {
+pub(crate) fn camera(eye: [f32; 3], target: [f32; 3]) -> Camera {
     Camera { name: "test".into(), eye, target, up: [0.0, 1.0, 0.0], vertical_fov: 60.0_f32.to_radians() }
 }
 
 /// A scene without anything in it.
-pub fn empty() -> Prt {
+pub(crate) fn empty() -> Prt {
     Prt {
         generator: "test".into(),
         convention: sh_math::CONVENTION.into(),
@@ -69,7 +69,7 @@ pub fn empty() -> Prt {
 }
 
 /// Adds triangles of three vertices each with one material; the transfer is unshadowed, the normals those of the triangles.
-pub fn add_triangles(prt: &mut Prt, material: Material, triangles: &[[Vec3; 3]]) {
+pub(crate) fn add_triangles(prt: &mut Prt, material: Material, triangles: &[[Vec3; 3]]) {
     let (first_vertex, first_triangle) = (prt.geometry.positions.len() as u32, prt.geometry.triangles.len() as u32);
     for corners in triangles {
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
@@ -94,25 +94,25 @@ pub fn add_triangles(prt: &mut Prt, material: Material, triangles: &[[Vec3; 3]])
 }
 
 /// Two triangles that make the parallelogram centre ± right ± up; the front is where right × up points.
-pub fn quad(centre: Vec3, right: Vec3, up: Vec3) -> [[Vec3; 3]; 2] {
+pub(crate) fn quad(centre: Vec3, right: Vec3, up: Vec3) -> [[Vec3; 3]; 2] {
     let [a, b, c, d] = [centre - right - up, centre + right - up, centre + right + up, centre - right + up];
     [[a, b, c], [a, c, d]]
 }
 
 /// A scene of one white quad that faces +z, 4 units wide, through the origin.
-pub fn wall(material: Material) -> Prt {
+pub(crate) fn wall(material: Material) -> Prt {
     let mut prt = empty();
     add_triangles(&mut prt, material, &quad(Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0));
     prt
 }
 
 /// The same colour for all three vertices of each triangle.
-pub fn paint(prt: &mut Prt, color_of_vertex: impl Fn(usize, Vec3) -> [f32; 4]) {
+pub(crate) fn paint(prt: &mut Prt, color_of_vertex: impl Fn(usize, Vec3) -> [f32; 4]) {
     let positions = &prt.geometry.positions;
     prt.geometry.colors = positions.iter().enumerate().map(|(i, &p)| color_of_vertex(i, Vec3::from(p))).collect();
 }
 
 /// Largest difference between a pixel and a colour.
-pub fn distance(pixel: [f32; 3], expected: [f32; 3]) -> f32 {
+pub(crate) fn distance(pixel: [f32; 3], expected: [f32; 3]) -> f32 {
     (0..3).map(|c| (pixel[c] - expected[c]).abs()).fold(0.0, f32::max)
 }
