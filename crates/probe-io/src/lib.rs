@@ -1,9 +1,27 @@
 //! Light probes in every layout, analytic lights, radiance by direction.
 
+mod angular;
+mod builtin;
+mod cube;
+mod detect;
 mod environment;
+mod equirect;
+mod error;
 mod layout;
+mod load;
+mod openexr;
+mod patch;
+mod picture;
 mod probe;
+pub mod reflection;
+mod rgbe;
+mod sky;
+mod studio;
 
+pub use builtin::{BUILTINS, builtin};
 pub use environment::{Environment, Lamp};
+pub use error::Error;
 pub use layout::Layout;
-pub use probe::Probe;
+pub use load::{LoadOptions, Negatives};
+pub use picture::{read_picture, write_exr, write_hdr};
+pub use probe::{Probe, Texel};

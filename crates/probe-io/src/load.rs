@@ -1,0 +1,194 @@
+//! Light probes from files and folders, checked for what radiance may be.
+
+use crate::error::{Error, Fault};
+use crate::picture::{self, Picture};
+use crate::{Environment, Layout, Probe, detect};
+use std::path::{Path, PathBuf};
+
+/// What to do with pixels of negative radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Negatives {
+    /// The file is refused.
+    Refuse,
+    /// Their negative channels become 0, with a warning that counts them.
+    Clamp,
+}
+
+/// How to read a light probe.
+#[derive(Debug, Clone, Copy)]
+pub struct LoadOptions {
+    /// Overrides the layout that the file and its shape suggest.
+    pub layout: Option<Layout>,
+    /// What to do with negative radiance.
+    pub negatives: Negatives,
+}
+
+impl LoadOptions {
+    /// Layout as detected; negative radiance is refused.
+    pub fn strict() -> LoadOptions {
+        LoadOptions {
+            layout: None,
+            negatives: Negatives::Refuse,
+        }
+    }
+
+    /// Layout as detected; negative radiance becomes 0 with a warning.
+    pub fn lenient() -> LoadOptions {
+        LoadOptions {
+            layout: None,
+            negatives: Negatives::Clamp,
+        }
+    }
+}
+
+impl Environment {
+    /// Reads a `.hdr` or `.exr` probe, or a folder of six faces (px, nx, py, ny, pz, nz); the strings are warnings.
+    ///
+    /// # Errors
+    /// Where a file cannot be read or is damaged, its layout cannot be told, or a pixel is negative (unless
+    /// clamped), infinite or not a number.
+    pub fn load(path: &Path, options: &LoadOptions) -> Result<(Environment, Vec<String>), Error> {
+        let mut warnings = Vec::new();
+        let probe = if path.is_dir() {
+            load_folder(path, options, &mut warnings)?
+        } else {
+            load_file(path, options, &mut warnings)?
+        };
+        let name = path.display().to_string();
+        Ok((Environment::from_image(&name, probe), warnings))
+    }
+}
+
+/// Reads one picture and finds its layout.
+fn load_file(
+    path: &Path,
+    options: &LoadOptions,
+    warnings: &mut Vec<String>,
+) -> Result<Probe, Error> {
+    let mut picture = picture::open(path)?;
+    warnings.append(&mut picture.warnings);
+    check_radiance(path, &mut picture, options.negatives, warnings)?;
+    let layout = match options.layout {
+        Some(layout) => layout,
+        None => detect::layout(&picture, path, warnings).map_err(|fault| fault.at(path))?,
+    };
+    let (width, height) = (picture.width, picture.height);
+    let size = layout.check_size(width, height);
+    size.map_err(|what| Fault::Invalid(what).at(path))?;
+    if picture.envmap.is_some_and(|stated| stated != layout) {
+        warnings.push(format!(
+            "read as {layout} against the file's envmap attribute"
+        ));
+    }
+    Ok(Probe {
+        layout,
+        width,
+        height,
+        pixels: picture.pixels,
+    })
+}
+
+/// Names that the files of a face may have, without their endings, in the order of [`Layout::Faces`].
+const FACE_NAMES: [[&str; 4]; 6] = [
+    ["px", "posx", "positive_x", "right"],
+    ["nx", "negx", "negative_x", "left"],
+    ["py", "posy", "positive_y", "top"],
+    ["ny", "negy", "negative_y", "bottom"],
+    ["pz", "posz", "positive_z", "front"],
+    ["nz", "negz", "negative_z", "back"],
+];
+
+/// Reads six square faces of one size from a folder.
+fn load_folder(
+    folder: &Path,
+    options: &LoadOptions,
+    warnings: &mut Vec<String>,
+) -> Result<Probe, Error> {
+    if options.layout.is_some_and(|layout| layout != Layout::Faces) {
+        let what = "a folder holds six faces; leave --layout away or choose faces";
+        return Err(Fault::Unsupported(what.to_owned()).at(folder));
+    }
+    let mut side = None;
+    let mut pixels = Vec::new();
+    for names in FACE_NAMES {
+        let path = find_face(folder, names)?;
+        let mut face = picture::open(&path)?;
+        warnings.append(&mut face.warnings);
+        check_radiance(&path, &mut face, options.negatives, warnings)?;
+        let wanted = *side.get_or_insert(face.width);
+        if face.width != wanted || face.height != wanted {
+            let what = format!(
+                "the face is {} x {} pixels, not {wanted} x {wanted} as the first one",
+                face.width, face.height
+            );
+            return Err(Fault::Invalid(what).at(&path));
+        }
+        pixels.extend(face.pixels);
+    }
+    let width = side.unwrap_or(0);
+    Ok(Probe {
+        layout: Layout::Faces,
+        width,
+        height: 6 * width,
+        pixels,
+    })
+}
+
+/// The file of one face.
+fn find_face(folder: &Path, names: [&str; 4]) -> Result<PathBuf, Error> {
+    for name in names {
+        for ending in ["hdr", "exr"] {
+            let path = folder.join(format!("{name}.{ending}"));
+            if path.is_file() {
+                return Ok(path);
+            }
+        }
+    }
+    let what = format!("no face {0}.hdr or {0}.exr in this folder", names[0]);
+    Err(Fault::Invalid(what).at(folder))
+}
+
+/// Refuses infinite and NaN pixels with their place, and refuses or clamps negative ones.
+fn check_radiance(
+    path: &Path,
+    picture: &mut Picture,
+    negatives: Negatives,
+    warnings: &mut Vec<String>,
+) -> Result<(), Error> {
+    let width = picture.width;
+    let place = |index: usize| format!("pixel ({}, {})", index % width, index / width);
+    let mut lowest = 0.0f32;
+    let mut lowest_at = 0;
+    let mut count = 0;
+    for (index, pixel) in picture.pixels.iter().enumerate() {
+        if let Some(value) = pixel.iter().find(|v| !v.is_finite()) {
+            let what = format!(
+                "{} has radiance {value}; only finite values are light",
+                place(index)
+            );
+            return Err(Fault::Invalid(what).at(path));
+        }
+        let least = pixel.iter().fold(0.0f32, |a, b| a.min(*b));
+        count += usize::from(least < 0.0);
+        if least < lowest {
+            (lowest, lowest_at) = (least, index);
+        }
+    }
+    if count == 0 {
+        return Ok(());
+    }
+    let found = format!(
+        "{count} pixels have negative radiance, the lowest {lowest} at {}",
+        place(lowest_at)
+    );
+    if negatives == Negatives::Refuse {
+        let what =
+            format!("{found}; clamp them to 0 by choice (--negatives clamp) or mend the file");
+        return Err(Fault::Invalid(what).at(path));
+    }
+    for pixel in &mut picture.pixels {
+        *pixel = pixel.map(|v| v.max(0.0));
+    }
+    warnings.push(format!("{}: {found}; set to 0", path.display()));
+    Ok(())
+}
