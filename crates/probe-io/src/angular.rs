@@ -46,11 +46,7 @@ fn direction(u: f64, v: f64) -> DVec3 {
 fn locate(side: usize, d: DVec3) -> (f64, f64) {
     let flat = libm::sqrt(d.x * d.x + d.y * d.y);
     let r = libm::atan2(flat, d.z) / PI;
-    let (u, v) = if flat > 0.0 {
-        (-d.x / flat * r, d.y / flat * r)
-    } else {
-        (r, 0.0)
-    };
+    let (u, v) = if flat > 0.0 { (-d.x / flat * r, d.y / flat * r) } else { (r, 0.0) };
     let n = side as f64;
     ((u + 1.0) * 0.5 * n, (1.0 - v) * 0.5 * n)
 }
@@ -71,13 +67,7 @@ fn gauss5() -> [(f64, f64); 5] {
     let inner = libm::sqrt(5.0 - 2.0 * s) / 3.0;
     let outer = libm::sqrt(5.0 + 2.0 * s) / 3.0;
     let (wide, narrow) = ((322.0 + 13.0 * t) / 900.0, (322.0 - 13.0 * t) / 900.0);
-    [
-        (-outer, narrow),
-        (-inner, wide),
-        (0.0, 128.0 / 225.0),
-        (inner, wide),
-        (outer, narrow),
-    ]
+    [(-outer, narrow), (-inner, wide), (0.0, 128.0 / 225.0), (inner, wide), (outer, narrow)]
 }
 
 /// Integral of [`density`] over the part of `[u0,u1] x [v0,v1]` on the disc; each line is cut at the rim.
@@ -90,10 +80,7 @@ fn integrate(u: (f64, f64), v: (f64, f64), rule: &[(f64, f64); 5]) -> f64 {
         if x0 >= x1 {
             continue;
         }
-        let line: f64 = rule
-            .iter()
-            .map(|&(a, w)| w * density(0.5 * (x0 + x1) + 0.5 * (x1 - x0) * a, y))
-            .sum();
+        let line: f64 = rule.iter().map(|&(a, w)| w * density(0.5 * (x0 + x1) + 0.5 * (x1 - x0) * a, y)).sum();
         sum += line_weight * line * 0.5 * (x1 - x0);
     }
     sum * 0.5 * (v.1 - v.0)
@@ -107,11 +94,7 @@ const STEP_RIM: f64 = 1.0 / 128.0;
 fn solid_angle(u: (f64, f64), v: (f64, f64), rule: &[(f64, f64); 5]) -> f64 {
     let far = |a: (f64, f64)| a.0.abs().max(a.1.abs());
     let near = |a: (f64, f64)| {
-        if a.0 * a.1 <= 0.0 {
-            0.0
-        } else {
-            a.0.abs().min(a.1.abs())
-        }
+        if a.0 * a.1 <= 0.0 { 0.0 } else { a.0.abs().min(a.1.abs()) }
     };
     let square = |a: f64, b: f64| a * a + b * b;
     if square(near(u), near(v)) >= 1.0 {
@@ -134,10 +117,7 @@ pub(crate) fn patch(side: usize, rect: &Rect) -> Option<Patch> {
     let (u0, v1) = disc(side, rect.x0, rect.y0);
     let (u1, v0) = disc(side, rect.x1, rect.y1);
     let solid_angle = solid_angle((u0, u1), (v0, v1), &gauss5());
-    (solid_angle > 0.0).then(|| Patch {
-        direction: direction(0.5 * (u0 + u1), 0.5 * (v0 + v1)),
-        solid_angle,
-    })
+    (solid_angle > 0.0).then(|| Patch { direction: direction(0.5 * (u0 + u1), 0.5 * (v0 + v1)), solid_angle })
 }
 
 /// The pixel of the disc nearest to a picture position: positions beyond the last whole pixel move inwards.

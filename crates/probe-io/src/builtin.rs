@@ -9,32 +9,14 @@ use std::f32::consts::PI;
 
 /// Every analytic light: its name with optional numbers, and what it is.
 pub const BUILTINS: &[(&str, &str)] = &[
-    (
-        "constant[:GREY|:R,G,B]",
-        "the same radiance from everywhere (1 unless stated)",
-    ),
+    ("constant[:GREY|:R,G,B]", "the same radiance from everywhere (1 unless stated)"),
     ("white", "constant radiance 1"),
-    (
-        "two-lights",
-        "two soft lights by formula: max(0, 5 cos theta - 4) and a second one, theta from +z",
-    ),
+    ("two-lights", "two soft lights by formula: max(0, 5 cos theta - 4) and a second one, theta from +z"),
     ("directional[:ELEVATION,AZIMUTH]", "parallel light (50, 40)"),
-    (
-        "cone[:HALF_ANGLE,ELEVATION,AZIMUTH]",
-        "a uniform disc of light (20, 50, 40)",
-    ),
-    (
-        "sphere[:DISTANCE,ELEVATION,AZIMUTH]",
-        "a far glowing sphere, its distance in radii (4, 50, 40)",
-    ),
-    (
-        "hemisphere[:SKY,GROUND]",
-        "one grey above the horizon, another below (1, 0)",
-    ),
-    (
-        "sky[:ELEVATION,AZIMUTH]",
-        "clear sky over dry ground with the sun as a lamp (40, 40)",
-    ),
+    ("cone[:HALF_ANGLE,ELEVATION,AZIMUTH]", "a uniform disc of light (20, 50, 40)"),
+    ("sphere[:DISTANCE,ELEVATION,AZIMUTH]", "a far glowing sphere, its distance in radii (4, 50, 40)"),
+    ("hemisphere[:SKY,GROUND]", "one grey above the horizon, another below (1, 0)"),
+    ("sky[:ELEVATION,AZIMUTH]", "clear sky over dry ground with the sun as a lamp (40, 40)"),
     ("studio", "a dim room with four soft boxes"),
 ];
 

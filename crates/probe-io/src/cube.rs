@@ -120,11 +120,7 @@ pub(crate) fn covers(layout: Layout, width: usize, x: usize, y: usize) -> bool {
 fn pixel_of(layout: Layout, width: usize, face: usize, i: usize, j: usize) -> usize {
     let n = side(layout, width);
     let (column, row) = tile_of(layout, face);
-    let (i, j) = if is_turned(layout, face) {
-        (n - 1 - i, n - 1 - j)
-    } else {
-        (i, j)
-    };
+    let (i, j) = if is_turned(layout, face) { (n - 1 - i, n - 1 - j) } else { (i, j) };
     (row * n + j) * width + column * n + i
 }
 
@@ -135,10 +131,7 @@ fn span(layout: Layout, n: usize, i: usize) -> (f64, f64) {
     if layout == Layout::ExrCube && n > 1 {
         let step = 2.0 / (n - 1) as f64;
         let centre = -1.0 + step * i as f64;
-        return (
-            (centre - 0.5 * step).max(-1.0),
-            (centre + 0.5 * step).min(1.0),
-        );
+        return ((centre - 0.5 * step).max(-1.0), (centre + 0.5 * step).min(1.0));
     }
     let step = 2.0 / n as f64;
     (-1.0 + step * i as f64, -1.0 + step * (i + 1) as f64)
@@ -167,25 +160,14 @@ pub(crate) fn patch(
     let n = side(layout, width);
     let (face, i, j) = texel_of(layout, width, x, y)?;
     let (u, v) = (span(layout, n, i), span(layout, n, j));
-    let cell = Rect {
-        x0: u.0,
-        y0: v.0,
-        x1: u.1,
-        y1: v.1,
-    }
-    .cell(split, a, b);
+    let cell = Rect { x0: u.0, y0: v.0, x1: u.1, y1: v.1 }.cell(split, a, b);
     let (cu, cv) = match split {
         1 => (position(layout, n, i as i64), position(layout, n, j as i64)),
         _ => cell.centre(),
     };
-    let solid_angle = corner_angle(cell.x1, cell.y1)
-        - corner_angle(cell.x0, cell.y1)
-        - corner_angle(cell.x1, cell.y0)
+    let solid_angle = corner_angle(cell.x1, cell.y1) - corner_angle(cell.x0, cell.y1) - corner_angle(cell.x1, cell.y0)
         + corner_angle(cell.x0, cell.y0);
-    Some(Patch {
-        direction: cube_point(layout, face, cu, cv).normalize(),
-        solid_angle,
-    })
+    Some(Patch { direction: cube_point(layout, face, cu, cv).normalize(), solid_angle })
 }
 
 /// The texel of a face whose area holds `(u, v)`.
@@ -212,11 +194,7 @@ pub(crate) fn taps(layout: Layout, width: usize, d: DVec3) -> [(usize, f32); 4] 
     let n = side(layout, width);
     let (face, u, v) = face_of(layout, d);
     let place = |t: f64| {
-        if layout == Layout::ExrCube {
-            (t + 1.0) * 0.5 * (n - 1) as f64
-        } else {
-            (t + 1.0) * 0.5 * n as f64 - 0.5
-        }
+        if layout == Layout::ExrCube { (t + 1.0) * 0.5 * (n - 1) as f64 } else { (t + 1.0) * 0.5 * n as f64 - 0.5 }
     };
     let (x, y) = (place(u), place(v));
     let (x0, y0) = (libm::floor(x), libm::floor(y));
@@ -231,10 +209,5 @@ pub(crate) fn taps(layout: Layout, width: usize, d: DVec3) -> [(usize, f32); 4] 
         let over = cube_point(layout, face, position(layout, n, i), position(layout, n, j));
         nearest(layout, width, over)
     };
-    [
-        (at(0, 0), (1.0 - fx) * (1.0 - fy)),
-        (at(1, 0), fx * (1.0 - fy)),
-        (at(0, 1), (1.0 - fx) * fy),
-        (at(1, 1), fx * fy),
-    ]
+    [(at(0, 0), (1.0 - fx) * (1.0 - fy)), (at(1, 0), fx * (1.0 - fy)), (at(0, 1), (1.0 - fx) * fy), (at(1, 1), fx * fy)]
 }

@@ -21,11 +21,7 @@ const WORDS: [(&str, Layout); 8] = [
 const STRAY_LIGHT: f64 = 1e-3;
 
 /// Finds the layout of a picture; guesses are told as warnings.
-pub(crate) fn layout(
-    picture: &Picture,
-    path: &Path,
-    warnings: &mut Vec<String>,
-) -> Result<Layout, Fault> {
+pub(crate) fn layout(picture: &Picture, path: &Path, warnings: &mut Vec<String>) -> Result<Layout, Fault> {
     if let Some(layout) = picture.envmap {
         return Ok(layout);
     }
@@ -46,17 +42,11 @@ pub(crate) fn layout(
         );
         return Ok(Layout::Faces);
     }
-    let candidate = [
-        Layout::Angular,
-        Layout::VerticalCross,
-        Layout::HorizontalCross,
-    ]
-    .into_iter()
-    .find(|layout| layout.tiles().is_some_and(|(c, r)| is(c, r)));
+    let candidate = [Layout::Angular, Layout::VerticalCross, Layout::HorizontalCross]
+        .into_iter()
+        .find(|layout| layout.tiles().is_some_and(|(c, r)| is(c, r)));
     match (candidate, named) {
-        (_, Some(Layout::Equirect)) | (None, Some(Layout::Angular)) => {
-            named_shape(named, picture, warnings)
-        }
+        (_, Some(Layout::Equirect)) | (None, Some(Layout::Angular)) => named_shape(named, picture, warnings),
         (Some(layout), _) if is_empty_outside(picture, layout) => Ok(layout),
         (Some(layout), Some(name)) if layout == name => Ok(layout),
         (Some(layout), _) => Err(Fault::Unsupported(format!(
@@ -71,17 +61,11 @@ pub(crate) fn layout(
 }
 
 /// Takes the name's word where the shape is unusual.
-fn named_shape(
-    named: Option<Layout>,
-    picture: &Picture,
-    warnings: &mut Vec<String>,
-) -> Result<Layout, Fault> {
+fn named_shape(named: Option<Layout>, picture: &Picture, warnings: &mut Vec<String>) -> Result<Layout, Fault> {
     let layout = named.unwrap_or(Layout::Equirect);
     let (width, height) = (picture.width, picture.height);
     layout.check_size(width, height).map_err(Fault::Invalid)?;
-    warnings.push(format!(
-        "{width} x {height} pixels are read as {layout} by the file's name"
-    ));
+    warnings.push(format!("{width} x {height} pixels are read as {layout} by the file's name"));
     Ok(layout)
 }
 

@@ -40,31 +40,18 @@ const FUNCTION_SPLIT: usize = 4;
 impl Environment {
     /// The same radiance from everywhere.
     pub fn constant(radiance: [f32; 3]) -> Environment {
-        let image = Probe {
-            layout: Layout::Equirect,
-            width: 2,
-            height: 1,
-            pixels: vec![radiance; 2],
-        };
+        let image = Probe { layout: Layout::Equirect, width: 2, height: 1, pixels: vec![radiance; 2] };
         Environment::from_image("constant", image)
     }
 
     /// Only a picture, no lamps.
     pub fn from_image(name: &str, image: Probe) -> Environment {
-        Environment {
-            name: name.to_owned(),
-            image,
-            lamps: Vec::new(),
-        }
+        Environment { name: name.to_owned(), image, lamps: Vec::new() }
     }
 
     /// A panorama of `2 height` by `height` pixels from radiance by unit direction; each pixel is the mean
     /// over its solid angle on a 4 by 4 grid.
-    pub fn from_function(
-        name: &str,
-        height: usize,
-        radiance: impl Fn(DVec3) -> [f64; 3],
-    ) -> Environment {
+    pub fn from_function(name: &str, height: usize, radiance: impl Fn(DVec3) -> [f64; 3]) -> Environment {
         let height = height.max(1);
         let width = 2 * height;
         let mut pixels = Vec::with_capacity(width * height);
@@ -73,12 +60,7 @@ impl Environment {
                 pixels.push(pixel_mean(width, height, x, y, &radiance));
             }
         }
-        let image = Probe {
-            layout: Layout::Equirect,
-            width,
-            height,
-            pixels,
-        };
+        let image = Probe { layout: Layout::Equirect, width, height, pixels };
         Environment::from_image(name, image)
     }
 
@@ -106,13 +88,7 @@ impl Environment {
 }
 
 /// Mean radiance of a pixel of a panorama, each cell weighted by its solid angle.
-fn pixel_mean(
-    width: usize,
-    height: usize,
-    x: usize,
-    y: usize,
-    radiance: &impl Fn(DVec3) -> [f64; 3],
-) -> [f32; 3] {
+fn pixel_mean(width: usize, height: usize, x: usize, y: usize, radiance: &impl Fn(DVec3) -> [f64; 3]) -> [f32; 3] {
     let rect = crate::patch::Rect::pixel(x, y);
     let mut sum = [0.0; 3];
     let mut total = 0.0;
@@ -133,8 +109,7 @@ impl Lamp {
             return [0.0; 3];
         }
         let sin = libm::sin(f64::from(self.half_angle));
-        self.irradiance
-            .map(|e| (f64::from(e) / (PI * sin * sin)) as f32)
+        self.irradiance.map(|e| (f64::from(e) / (PI * sin * sin)) as f32)
     }
 
     /// Whether a unit direction points into the disc.
@@ -162,9 +137,7 @@ impl Lamp {
         }
         let sin = libm::sin(f64::from(self.half_angle));
         let share = self.solid_angle() / (LAMP_RINGS * LAMP_SPOKES) as f64;
-        let weight = self
-            .irradiance
-            .map(|e| f64::from(e) / (PI * sin * sin) * share);
+        let weight = self.irradiance.map(|e| f64::from(e) / (PI * sin * sin) * share);
         let (tangent, bitangent) = axis.any_orthonormal_pair();
         let depth = self.solid_angle() / TAU;
         let mut samples = Vec::with_capacity(LAMP_RINGS * LAMP_SPOKES);

@@ -18,11 +18,7 @@ pub(crate) fn direction(width: usize, height: usize, x: f64, y: f64) -> DVec3 {
 /// The picture position of a direction: the inverse of [`direction`].
 pub(crate) fn locate(width: usize, height: usize, d: DVec3) -> (f64, f64) {
     let flat = libm::sqrt(d.x * d.x + d.z * d.z);
-    let phi = if flat > 0.0 {
-        libm::atan2(-d.x, d.z)
-    } else {
-        0.0
-    };
+    let phi = if flat > 0.0 { libm::atan2(-d.x, d.z) } else { 0.0 };
     let theta = libm::atan2(flat, d.y);
     let x = (phi / TAU + 0.5) * width as f64;
     (x, theta / PI * height as f64)
@@ -36,10 +32,7 @@ pub(crate) fn patch(width: usize, height: usize, rect: &Rect) -> Patch {
     // cos a - cos b = 2 sin((a+b)/2) sin((b-a)/2) keeps all digits near the poles.
     let band = 2.0 * libm::sin(0.5 * (theta0 + theta1)) * libm::sin(0.5 * (theta1 - theta0));
     let (x, y) = rect.centre();
-    Patch {
-        direction: direction(width, height, x, y),
-        solid_angle: TAU * (rect.x1 - rect.x0) / width as f64 * band,
-    }
+    Patch { direction: direction(width, height, x, y), solid_angle: TAU * (rect.x1 - rect.x0) / width as f64 * band }
 }
 
 /// Solid angle of one pixel of a row.
@@ -54,12 +47,7 @@ pub(crate) fn taps(width: usize, height: usize, d: DVec3) -> [(usize, f32); 4] {
     let (x0, y0) = (libm::floor(x), libm::floor(y));
     let (fx, fy) = ((x - x0) as f32, (y - y0) as f32);
     let at = |dx: i64, dy: i64| pixel(width, height, x0 as i64 + dx, y0 as i64 + dy);
-    [
-        (at(0, 0), (1.0 - fx) * (1.0 - fy)),
-        (at(1, 0), fx * (1.0 - fy)),
-        (at(0, 1), (1.0 - fx) * fy),
-        (at(1, 1), fx * fy),
-    ]
+    [(at(0, 0), (1.0 - fx) * (1.0 - fy)), (at(1, 0), fx * (1.0 - fy)), (at(0, 1), (1.0 - fx) * fy), (at(1, 1), fx * fy)]
 }
 
 /// The index of a pixel that may lie up to one row over a pole or any number of columns around.

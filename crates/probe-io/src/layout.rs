@@ -33,10 +33,7 @@ impl Layout {
 
     /// The name that `--layout` takes.
     pub fn name(self) -> &'static str {
-        Self::NAMES
-            .iter()
-            .find(|(_, layout)| *layout == self)
-            .map_or("", |(name, _)| name)
+        Self::NAMES.iter().find(|(_, layout)| *layout == self).map_or("", |(name, _)| name)
     }
 
     /// Width and height of the picture in tiles, where the layout is made of square tiles.
@@ -62,9 +59,7 @@ impl Layout {
         if tile > 0 && tile * columns == width && tile * rows == height {
             return Ok(());
         }
-        Err(format!(
-            "{width} x {height} pixels are not {columns} x {rows} square tiles as layout {self} needs"
-        ))
+        Err(format!("{width} x {height} pixels are not {columns} x {rows} square tiles as layout {self} needs"))
     }
 }
 
@@ -81,10 +76,7 @@ impl FromStr for Layout {
         let known = Self::NAMES.iter().find(|(name, _)| *name == text);
         known.map(|(_, layout)| *layout).ok_or_else(|| {
             let names: Vec<&str> = Self::NAMES.iter().map(|(name, _)| *name).collect();
-            format!(
-                "unknown layout '{text}'; choose one of {}",
-                names.join(", ")
-            )
+            format!("unknown layout '{text}'; choose one of {}", names.join(", "))
         })
     }
 }

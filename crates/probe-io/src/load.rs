@@ -26,18 +26,12 @@ pub struct LoadOptions {
 impl LoadOptions {
     /// Layout as detected; negative radiance is refused.
     pub fn strict() -> LoadOptions {
-        LoadOptions {
-            layout: None,
-            negatives: Negatives::Refuse,
-        }
+        LoadOptions { layout: None, negatives: Negatives::Refuse }
     }
 
     /// Layout as detected; negative radiance becomes 0 with a warning.
     pub fn lenient() -> LoadOptions {
-        LoadOptions {
-            layout: None,
-            negatives: Negatives::Clamp,
-        }
+        LoadOptions { layout: None, negatives: Negatives::Clamp }
     }
 }
 
@@ -60,11 +54,7 @@ impl Environment {
 }
 
 /// Reads one picture and finds its layout.
-fn load_file(
-    path: &Path,
-    options: &LoadOptions,
-    warnings: &mut Vec<String>,
-) -> Result<Probe, Error> {
+fn load_file(path: &Path, options: &LoadOptions, warnings: &mut Vec<String>) -> Result<Probe, Error> {
     let mut picture = picture::open(path)?;
     warnings.append(&mut picture.warnings);
     check_radiance(path, &mut picture, options.negatives, warnings)?;
@@ -76,16 +66,9 @@ fn load_file(
     let size = layout.check_size(width, height);
     size.map_err(|what| Fault::Invalid(what).at(path))?;
     if picture.envmap.is_some_and(|stated| stated != layout) {
-        warnings.push(format!(
-            "read as {layout} against the file's envmap attribute"
-        ));
+        warnings.push(format!("read as {layout} against the file's envmap attribute"));
     }
-    Ok(Probe {
-        layout,
-        width,
-        height,
-        pixels: picture.pixels,
-    })
+    Ok(Probe { layout, width, height, pixels: picture.pixels })
 }
 
 /// Names that the files of a face may have, without their endings, in the order of [`Layout::Faces`].
@@ -99,11 +82,7 @@ const FACE_NAMES: [[&str; 4]; 6] = [
 ];
 
 /// Reads six square faces of one size from a folder.
-fn load_folder(
-    folder: &Path,
-    options: &LoadOptions,
-    warnings: &mut Vec<String>,
-) -> Result<Probe, Error> {
+fn load_folder(folder: &Path, options: &LoadOptions, warnings: &mut Vec<String>) -> Result<Probe, Error> {
     if options.layout.is_some_and(|layout| layout != Layout::Faces) {
         let what = "a folder holds six faces; leave --layout away or choose faces";
         return Err(Fault::Unsupported(what.to_owned()).at(folder));
@@ -126,12 +105,7 @@ fn load_folder(
         pixels.extend(face.pixels);
     }
     let width = side.unwrap_or(0);
-    Ok(Probe {
-        layout: Layout::Faces,
-        width,
-        height: 6 * width,
-        pixels,
-    })
+    Ok(Probe { layout: Layout::Faces, width, height: 6 * width, pixels })
 }
 
 /// The file of one face.
@@ -162,10 +136,7 @@ fn check_radiance(
     let mut count = 0;
     for (index, pixel) in picture.pixels.iter().enumerate() {
         if let Some(value) = pixel.iter().find(|v| !v.is_finite()) {
-            let what = format!(
-                "{} has radiance {value}; only finite values are light",
-                place(index)
-            );
+            let what = format!("{} has radiance {value}; only finite values are light", place(index));
             return Err(Fault::Invalid(what).at(path));
         }
         let least = pixel.iter().fold(0.0f32, |a, b| a.min(*b));
@@ -177,13 +148,9 @@ fn check_radiance(
     if count == 0 {
         return Ok(());
     }
-    let found = format!(
-        "{count} pixels have negative radiance, the lowest {lowest} at {}",
-        place(lowest_at)
-    );
+    let found = format!("{count} pixels have negative radiance, the lowest {lowest} at {}", place(lowest_at));
     if negatives == Negatives::Refuse {
-        let what =
-            format!("{found}; clamp them to 0 by choice (--negatives clamp) or mend the file");
+        let what = format!("{found}; clamp them to 0 by choice (--negatives clamp) or mend the file");
         return Err(Fault::Invalid(what).at(path));
     }
     for pixel in &mut picture.pixels {

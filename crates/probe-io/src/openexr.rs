@@ -23,22 +23,12 @@ pub(crate) fn read(bytes: &[u8]) -> std::result::Result<Picture, Fault> {
     let envmap = header_envmap(header);
     let is_rgb = has_channel(header, "R");
     let Vec2(width, height) = header.layer_size;
-    let pixels = if is_rgb {
-        read_rgb(reader)?
-    } else {
-        read_luminance(reader)?
-    };
+    let pixels = if is_rgb { read_rgb(reader)? } else { read_luminance(reader)? };
     let mut warnings = Vec::new();
     if !is_rgb {
         warnings.push("the picture has only luminance: read as grey".to_owned());
     }
-    Ok(Picture {
-        width,
-        height,
-        pixels,
-        envmap,
-        warnings,
-    })
+    Ok(Picture { width, height, pixels, envmap, warnings })
 }
 
 /// Says an error of the `exr` crate in our words.
@@ -72,10 +62,7 @@ fn choose_layer(headers: &[Header]) -> std::result::Result<&Header, Fault> {
         .take(16)
         .map(|channel| channel.name.to_string())
         .collect();
-    Err(Fault::Unsupported(format!(
-        "no flat layer with channels R, G, B or Y; found: {}",
-        names.join(", ")
-    )))
+    Err(Fault::Unsupported(format!("no flat layer with channels R, G, B or Y; found: {}", names.join(", "))))
 }
 
 /// Refuses sizes beyond what the file's length can justify, and pictures with parts left out.
@@ -83,9 +70,8 @@ fn check_header(header: &Header, bytes: usize) -> std::result::Result<(), Fault>
     let Vec2(width, height) = header.layer_size;
     check_size(width, height, bytes)?;
     let Vec2(block_width, block_height) = header.max_block_pixel_size();
-    let block = block_width
-        .checked_mul(block_height)
-        .and_then(|pixels| pixels.checked_mul(header.channels.bytes_per_pixel));
+    let block =
+        block_width.checked_mul(block_height).and_then(|pixels| pixels.checked_mul(header.channels.bytes_per_pixel));
     if block.is_none_or(|size| size > MAX_BLOCK_BYTES) {
         return Err(Fault::Invalid(format!(
             "blocks of {block_width} x {block_height} pixels with {} bytes each are too large",
@@ -94,25 +80,14 @@ fn check_header(header: &Header, bytes: usize) -> std::result::Result<(), Fault>
     }
     // Each block has at least its place in the table and a size.
     if header.chunk_count.saturating_mul(8) > bytes {
-        return Err(Fault::Invalid(format!(
-            "{} blocks do not fit into a file of {bytes} bytes",
-            header.chunk_count
-        )));
+        return Err(Fault::Invalid(format!("{} blocks do not fit into a file of {bytes} bytes", header.chunk_count)));
     }
     for channel in &header.channels.list {
         if channel.sampling != Vec2(1, 1) {
-            return Err(Fault::Unsupported(format!(
-                "channel {} is subsampled; save as plain RGB",
-                channel.name
-            )));
+            return Err(Fault::Unsupported(format!("channel {} is subsampled; save as plain RGB", channel.name)));
         }
-        if channel.sample_type == SampleType::U32
-            && ["R", "G", "B", "Y"].contains(&channel.name.to_string().as_str())
-        {
-            return Err(Fault::Unsupported(format!(
-                "channel {} holds integers; save as half or float",
-                channel.name
-            )));
+        if channel.sample_type == SampleType::U32 && ["R", "G", "B", "Y"].contains(&channel.name.to_string().as_str()) {
+            return Err(Fault::Unsupported(format!("channel {} holds integers; save as half or float", channel.name)));
         }
     }
     Ok(())
@@ -135,10 +110,7 @@ struct Canvas {
 
 impl Canvas {
     fn new(Vec2(width, height): Vec2<usize>) -> Canvas {
-        Canvas {
-            width,
-            pixels: vec![[0.0; 3]; width * height],
-        }
+        Canvas { width, pixels: vec![[0.0; 3]; width * height] }
     }
 
     fn set(&mut self, Vec2(x, y): Vec2<usize>, value: [f32; 3]) {
@@ -172,10 +144,7 @@ fn read_luminance(reader: Reader<Cursor<&[u8]>>) -> std::result::Result<Vec<[f32
         .largest_resolution_level()
         .specific_channels()
         .required("Y")
-        .collect_pixels(
-            |size, _| Canvas::new(size),
-            |canvas: &mut Canvas, at, (y,): (f32,)| canvas.set(at, [y; 3]),
-        )
+        .collect_pixels(|size, _| Canvas::new(size), |canvas: &mut Canvas, at, (y,): (f32,)| canvas.set(at, [y; 3]))
         .first_valid_layer()
         .all_attributes()
         .non_parallel()
@@ -185,32 +154,16 @@ fn read_luminance(reader: Reader<Cursor<&[u8]>>) -> std::result::Result<Vec<[f32
 }
 
 /// Encodes a picture as floats in ZIP blocks of 16 lines.
-pub(crate) fn encode(
-    width: usize,
-    height: usize,
-    pixels: &[[f32; 3]],
-) -> std::result::Result<Vec<u8>, Fault> {
+pub(crate) fn encode(width: usize, height: usize, pixels: &[[f32; 3]]) -> std::result::Result<Vec<u8>, Fault> {
     let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
         let [r, g, b] = pixels[y * width + x];
         (r, g, b)
     });
-    let encoding = Encoding {
-        compression: Compression::ZIP16,
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
-    let layer = Layer::new(
-        (width, height),
-        LayerAttributes::named(""),
-        encoding,
-        channels,
-    );
+    let encoding =
+        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let layer = Layer::new((width, height), LayerAttributes::named(""), encoding, channels);
     let mut out = Cursor::new(Vec::new());
     let image = Image::from_layer(layer);
-    image
-        .write()
-        .non_parallel()
-        .to_buffered(&mut out)
-        .map_err(fault)?;
+    image.write().non_parallel().to_buffered(&mut out).map_err(fault)?;
     Ok(out.into_inner())
 }

@@ -28,12 +28,7 @@ impl Rect {
     /// The whole pixel `(x, y)`.
     pub(crate) fn pixel(x: usize, y: usize) -> Rect {
         let (x, y) = (x as f64, y as f64);
-        Rect {
-            x0: x,
-            y0: y,
-            x1: x + 1.0,
-            y1: y + 1.0,
-        }
+        Rect { x0: x, y0: y, x1: x + 1.0, y1: y + 1.0 }
     }
 
     /// Cell `(i, j)` of this rectangle cut into `split * split` equal cells.

@@ -30,13 +30,9 @@ const PIXELS_PER_BYTE: usize = 64;
 
 /// Refuses sizes that a file of this length cannot mean, before anything is allocated for them.
 pub(crate) fn check_size(width: usize, height: usize, bytes: usize) -> Result<(), Fault> {
-    let allowed = FREE_PIXELS
-        .max(bytes.saturating_mul(PIXELS_PER_BYTE))
-        .min(MAX_PIXELS);
+    let allowed = FREE_PIXELS.max(bytes.saturating_mul(PIXELS_PER_BYTE)).min(MAX_PIXELS);
     match width.checked_mul(height) {
-        Some(0) => Err(Fault::Invalid(format!(
-            "the picture is empty ({width} x {height})"
-        ))),
+        Some(0) => Err(Fault::Invalid(format!("the picture is empty ({width} x {height})"))),
         Some(pixels) if pixels <= allowed => Ok(()),
         _ => Err(Fault::Invalid(format!(
             "{width} x {height} pixels are more than a file of {bytes} bytes may hold here ({allowed})"
@@ -46,17 +42,11 @@ pub(crate) fn check_size(width: usize, height: usize, bytes: usize) -> Result<()
 
 /// Reads a `.hdr` or `.exr` file, told apart by its first bytes.
 pub(crate) fn open(path: &Path) -> Result<Picture, Error> {
-    let bytes = std::fs::read(path).map_err(|source| Error::Io {
-        doing: "read",
-        path: path.to_path_buf(),
-        source,
-    })?;
+    let bytes = std::fs::read(path).map_err(|source| Error::Io { doing: "read", path: path.to_path_buf(), source })?;
     let read = match bytes.get(..4) {
         Some(start) if start == openexr::MAGIC => openexr::read(&bytes),
         Some([b'#', b'?', ..]) => rgbe::read(&bytes),
-        _ => Err(Fault::Invalid(
-            "neither an OpenEXR nor a Radiance picture (.exr, .hdr)".to_owned(),
-        )),
+        _ => Err(Fault::Invalid("neither an OpenEXR nor a Radiance picture (.exr, .hdr)".to_owned())),
     };
     read.map_err(|fault| fault.at(path))
 }
@@ -75,12 +65,7 @@ pub fn read_picture(path: &Path) -> Result<(usize, usize, Vec<[f32; 3]>), Error>
 ///
 /// # Errors
 /// Where the pixels do not fill the size, or the system refuses.
-pub fn write_hdr(
-    path: &Path,
-    width: usize,
-    height: usize,
-    pixels: &[[f32; 3]],
-) -> Result<(), Error> {
+pub fn write_hdr(path: &Path, width: usize, height: usize, pixels: &[[f32; 3]]) -> Result<(), Error> {
     check_shape(path, width, height, pixels)?;
     write_beside(path, &rgbe::encode(width, height, pixels))
 }
@@ -89,12 +74,7 @@ pub fn write_hdr(
 ///
 /// # Errors
 /// Where the pixels do not fill the size, or the system refuses.
-pub fn write_exr(
-    path: &Path,
-    width: usize,
-    height: usize,
-    pixels: &[[f32; 3]],
-) -> Result<(), Error> {
+pub fn write_exr(path: &Path, width: usize, height: usize, pixels: &[[f32; 3]]) -> Result<(), Error> {
     check_shape(path, width, height, pixels)?;
     let bytes = openexr::encode(width, height, pixels).map_err(|fault| fault.at(path))?;
     write_beside(path, &bytes)
@@ -118,10 +98,6 @@ fn write_beside(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     written.map_err(|source| {
         // The part may not exist; the first error is the one that matters.
         let _ = std::fs::remove_file(&part);
-        Error::Io {
-            doing: "write",
-            path: path.to_path_buf(),
-            source,
-        }
+        Error::Io { doing: "write", path: path.to_path_buf(), source }
     })
 }

@@ -78,11 +78,7 @@ impl Probe {
             let cells = (0..split * split).map(move |k| (split, k % split, k / split));
             cells.filter_map(move |cell| {
                 let patch = self.patch((x, y), cell)?;
-                Some(Texel {
-                    direction: patch.direction,
-                    solid_angle: patch.solid_angle,
-                    radiance,
-                })
+                Some(Texel { direction: patch.direction, solid_angle: patch.solid_angle, radiance })
             })
         })
     }
@@ -110,12 +106,7 @@ impl Probe {
                 pixels.push(sum);
             }
         }
-        Probe {
-            layout: Layout::Equirect,
-            width,
-            height,
-            pixels,
-        }
+        Probe { layout: Layout::Equirect, width, height, pixels }
     }
 
     /// Whether any of a pixel lies on the sphere, in a picture of this layout and width.

@@ -39,18 +39,12 @@ impl Reflection {
                 return sharp.pixels.clone();
             }
             let rows = libm::ceil(ROWS_PER_WIDTH / alpha).min(MAX_ROWS as f64) as usize;
-            let rows = rows
-                .next_power_of_two()
-                .clamp(MIN_ROWS, MAX_ROWS.min(height.max(MIN_ROWS)));
+            let rows = rows.next_power_of_two().clamp(MIN_ROWS, MAX_ROWS.min(height.max(MIN_ROWS)));
             let source = flatten(environment, rows);
             let level = blur(&source, alpha);
             resample(&level, height)
         });
-        Reflection {
-            width: 2 * height,
-            height,
-            levels: blurred.collect(),
-        }
+        Reflection { width: 2 * height, height, levels: blurred.collect() }
     }
 
     /// Radiance mirrored from a unit direction at a perceptual roughness in [0, 1].
@@ -102,20 +96,13 @@ fn area_mean(image: &Probe, rows: usize) -> Probe {
     for texel in image.cells(split) {
         let (x, y) = equirect::locate(width, height, texel.direction);
         let pixel = (y as usize).min(height - 1) * width + (x as usize).min(width - 1);
-        for c in 0..3 {
-            sums[pixel][c] += f64::from(texel.radiance[c]) * texel.solid_angle;
-        }
-        sums[pixel][3] += texel.solid_angle;
+        let weighted = texel.radiance.map(|v| f64::from(v) * texel.solid_angle);
+        let [r, g, b, area] = sums[pixel];
+        let [dr, dg, db] = weighted;
+        sums[pixel] = [r + dr, g + dg, b + db, area + texel.solid_angle];
     }
-    let pixels = sums
-        .iter()
-        .map(|s| std::array::from_fn(|c| (s[c] / s[3]) as f32));
-    Probe {
-        layout: Layout::Equirect,
-        width,
-        height,
-        pixels: pixels.collect(),
-    }
+    let pixels = sums.iter().map(|s| std::array::from_fn(|c| (s[c] / s[3]) as f32));
+    Probe { layout: Layout::Equirect, width, height, pixels: pixels.collect() }
 }
 
 /// Blurs a panorama by the lobe of width alpha.
@@ -125,9 +112,7 @@ fn area_mean(image: &Probe, rows: usize) -> Probe {
 fn blur(source: &Probe, alpha: f64) -> Probe {
     let (width, height) = (source.width, source.height);
     let rows: Vec<Row> = (0..height).map(|y| Row::new(width, height, y)).collect();
-    let columns: Vec<f64> = (0..width)
-        .map(|x| libm::cos(std::f64::consts::TAU * x as f64 / width as f64))
-        .collect();
+    let columns: Vec<f64> = (0..width).map(|x| libm::cos(std::f64::consts::TAU * x as f64 / width as f64)).collect();
     let mut pixels = vec![[0.0f32; 3]; width * height];
     let mut kernel = vec![0.0f32; width];
     for (y, target) in rows.iter().enumerate() {
@@ -152,12 +137,7 @@ fn blur(source: &Probe, alpha: f64) -> Probe {
             *pixel = sum.map(|s| (f64::from(s) / total) as f32);
         }
     }
-    Probe {
-        layout: Layout::Equirect,
-        width,
-        height,
-        pixels,
-    }
+    Probe { layout: Layout::Equirect, width, height, pixels }
 }
 
 /// Where a row of a panorama stands.
@@ -173,11 +153,7 @@ impl Row {
     fn new(width: usize, height: usize, y: usize) -> Row {
         let (sin, cos) = libm::sincos(std::f64::consts::PI * (y as f64 + 0.5) / height as f64);
         let solid_angle = equirect::row_solid_angle(width, height, y);
-        Row {
-            cos,
-            sin,
-            solid_angle,
-        }
+        Row { cos, sin, solid_angle }
     }
 }
 
@@ -196,11 +172,7 @@ fn convolve(line: &[[f32; 3]], kernel: &[f32], sums: &mut [[f32; 3]]) {
     let width = line.len();
     for (shift, weight) in kernel.iter().enumerate() {
         let left = (width - shift) % width;
-        for start in if shift == left {
-            vec![shift]
-        } else {
-            vec![shift, left]
-        } {
+        for start in if shift == left { vec![shift] } else { vec![shift, left] } {
             let (tail, head) = line.split_at(start);
             for (sum, value) in sums.iter_mut().zip(head.iter().chain(tail)) {
                 for c in 0..3 {

@@ -21,20 +21,12 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Picture, Fault> {
     let mut pixels = vec![[0.0f32; 3]; width * height];
     let mut line = vec![[0u8; 4]; header.columns];
     for row in 0..header.rows {
-        lines
-            .read(&mut line)
-            .map_err(|what| Fault::Invalid(format!("line {row} of {} {what}", header.rows)))?;
+        lines.read(&mut line).map_err(|what| Fault::Invalid(format!("line {row} of {} {what}", header.rows)))?;
         for (column, rgbe) in line.iter().enumerate() {
             pixels[header.target(column, row)] = header.decode(*rgbe);
         }
     }
-    Ok(Picture {
-        width,
-        height,
-        pixels,
-        envmap: None,
-        warnings: header.warnings,
-    })
+    Ok(Picture { width, height, pixels, envmap: None, warnings: header.warnings })
 }
 
 /// What stands before the pixels.
@@ -57,21 +49,13 @@ struct Header {
 impl Header {
     /// Width and height of the upright picture.
     fn size(&self) -> (usize, usize) {
-        if self.transposed {
-            (self.rows, self.columns)
-        } else {
-            (self.columns, self.rows)
-        }
+        if self.transposed { (self.rows, self.columns) } else { (self.columns, self.rows) }
     }
 
     /// Index in the upright picture of a stored pixel.
     fn target(&self, column: usize, row: usize) -> usize {
         let (width, height) = self.size();
-        let (x, y) = if self.transposed {
-            (row, column)
-        } else {
-            (column, row)
-        };
+        let (x, y) = if self.transposed { (row, column) } else { (column, row) };
         let x = if self.flipped.0 { width - 1 - x } else { x };
         let y = if self.flipped.1 { height - 1 - y } else { y };
         y * width + x
@@ -105,9 +89,7 @@ fn read_header(bytes: &[u8]) -> Result<(Header, usize), Fault> {
     }
     let mut warnings = Vec::new();
     if scale != [1.0; 3] {
-        warnings.push(format!(
-            "the header's EXPOSURE and COLORCORR were undone: pixels times {scale:?}"
-        ));
+        warnings.push(format!("the header's EXPOSURE and COLORCORR were undone: pixels times {scale:?}"));
     }
     let size = next_line(bytes, &mut at)?;
     let mut header = parse_size(&size)?;
@@ -135,12 +117,8 @@ fn read_variable(line: &str, scale: &mut [f64; 3]) -> Result<(), Fault> {
     let numbers = || -> Result<Vec<f64>, Fault> {
         let parsed: Result<Vec<f64>, _> = value.split_whitespace().map(str::parse).collect();
         match parsed {
-            Ok(list) if !list.is_empty() && list.iter().all(|v| v.is_finite() && *v > 0.0) => {
-                Ok(list)
-            }
-            _ => Err(Fault::Invalid(format!(
-                "header line '{line:.60}' is not positive numbers"
-            ))),
+            Ok(list) if !list.is_empty() && list.iter().all(|v| v.is_finite() && *v > 0.0) => Ok(list),
+            _ => Err(Fault::Invalid(format!("header line '{line:.60}' is not positive numbers"))),
         }
     };
     match name.trim() {
@@ -166,11 +144,7 @@ fn read_variable(line: &str, scale: &mut [f64; 3]) -> Result<(), Fault> {
 
 /// Reads `-Y rows +X columns` in any of its eight forms: the first axis is the slow one.
 fn parse_size(line: &str) -> Result<Header, Fault> {
-    let wrong = || {
-        Fault::Invalid(format!(
-            "size line '{line:.60}' is not like '-Y 512 +X 1024'"
-        ))
-    };
+    let wrong = || Fault::Invalid(format!("size line '{line:.60}' is not like '-Y 512 +X 1024'"));
     let words: Vec<&str> = line.split_whitespace().collect();
     let [slow, rows, fast, columns] = words[..] else {
         return Err(wrong());
@@ -182,7 +156,8 @@ fn parse_size(line: &str) -> Result<Header, Fault> {
     let is_x = |axis: &str| matches!(axis, "+X" | "-X");
     let is_y = |axis: &str| matches!(axis, "+Y" | "-Y");
     let transposed = is_x(slow) && is_y(fast);
-    if !transposed && !(is_y(slow) && is_x(fast)) {
+    let upright = is_y(slow) && is_x(fast);
+    if !(transposed || upright) {
         return Err(wrong());
     }
     Ok(Header {
@@ -238,9 +213,7 @@ impl Lines<'_> {
                 129.. => (usize::from(count - 128), true),
                 _ => (usize::from(count), false),
             };
-            let run = line
-                .get_mut(x..x + length)
-                .ok_or("has a run past its end")?;
+            let run = line.get_mut(x..x + length).ok_or("has a run past its end")?;
             let mut value = [0];
             for (k, pixel) in run.iter_mut().enumerate() {
                 if k == 0 || !repeats {
@@ -273,14 +246,10 @@ impl Lines<'_> {
             if x == 0 {
                 return Err("starts with a run: there is no pixel to repeat".to_owned());
             }
-            let length = usize::from(pixel[3])
-                .checked_shl(shift)
-                .unwrap_or(usize::MAX);
+            let length = usize::from(pixel[3]).checked_shl(shift).unwrap_or(usize::MAX);
             let end = x.saturating_add(length);
             let value = line[x - 1];
-            line.get_mut(x..end)
-                .ok_or("has a run past its end")?
-                .fill(value);
+            line.get_mut(x..end).ok_or("has a run past its end")?.fill(value);
             x = end;
             // A line is shorter than 2^32, so a longer count is refused as a run past the end.
             shift = (shift + 8).min(usize::BITS - 9);
@@ -293,8 +262,7 @@ impl Lines<'_> {
 ///
 /// Negative and NaN values become 0, values above the largest of the format (1.7e38) become it.
 pub(crate) fn encode(width: usize, height: usize, pixels: &[[f32; 3]]) -> Vec<u8> {
-    let mut out =
-        format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes();
+    let mut out = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes();
     for line in pixels.chunks_exact(width) {
         let coded: Vec<[u8; 4]> = line.iter().map(|pixel| encode_pixel(*pixel)).collect();
         if !RUN_WIDTHS.contains(&width) {
@@ -326,12 +294,7 @@ fn encode_pixel(pixel: [f32; 3]) -> [u8; 4] {
         exponent += 1;
     }
     let byte = |value: f32| mantissa(value, exponent).min(255.0) as u8;
-    [
-        byte(pixel[0]),
-        byte(pixel[1]),
-        byte(pixel[2]),
-        (exponent + 128) as u8,
-    ]
+    [byte(pixel[0]), byte(pixel[1]), byte(pixel[2]), (exponent + 128) as u8]
 }
 
 /// Shortest run worth its two bytes.

@@ -17,30 +17,10 @@ struct SoftBox {
 
 /// Key, fill, rim and top light: one warm, one cold, two neutral.
 const BOXES: [SoftBox; 4] = [
-    SoftBox {
-        azimuth: 40.0,
-        elevation: 35.0,
-        half: [0.42, 0.55],
-        radiance: [9.0, 8.4, 7.6],
-    },
-    SoftBox {
-        azimuth: -65.0,
-        elevation: 15.0,
-        half: [0.30, 0.75],
-        radiance: [2.4, 2.8, 3.4],
-    },
-    SoftBox {
-        azimuth: 170.0,
-        elevation: 30.0,
-        half: [0.18, 0.70],
-        radiance: [7.0, 7.2, 7.6],
-    },
-    SoftBox {
-        azimuth: 0.0,
-        elevation: 88.0,
-        half: [0.75, 0.35],
-        radiance: [3.0, 3.0, 3.0],
-    },
+    SoftBox { azimuth: 40.0, elevation: 35.0, half: [0.42, 0.55], radiance: [9.0, 8.4, 7.6] },
+    SoftBox { azimuth: -65.0, elevation: 15.0, half: [0.30, 0.75], radiance: [2.4, 2.8, 3.4] },
+    SoftBox { azimuth: 170.0, elevation: 30.0, half: [0.18, 0.70], radiance: [7.0, 7.2, 7.6] },
+    SoftBox { azimuth: 0.0, elevation: 88.0, half: [0.75, 0.35], radiance: [3.0, 3.0, 3.0] },
 ];
 
 /// Width of a box's soft edge at distance 1.
@@ -58,11 +38,7 @@ pub(crate) fn studio() -> Environment {
 
 /// Radiance in a unit direction.
 fn radiance(d: DVec3) -> [f64; 3] {
-    let (far, share) = if d.y < 0.0 {
-        (FLOOR, -d.y)
-    } else {
-        (CEILING, d.y)
-    };
+    let (far, share) = if d.y < 0.0 { (FLOOR, -d.y) } else { (CEILING, d.y) };
     let share = smooth(share);
     let mut sum: [f64; 3] = std::array::from_fn(|c| WALL[c] + (far[c] - WALL[c]) * share);
     for light in &BOXES {
@@ -90,8 +66,7 @@ impl SoftBox {
         if forward <= 0.0 {
             return 0.0;
         }
-        let within =
-            |along: DVec3, half: f64| smooth((half - (d.dot(along) / forward).abs()) / EDGE + 0.5);
+        let within = |along: DVec3, half: f64| smooth((half - (d.dot(along) / forward).abs()) / EDGE + 0.5);
         within(side, self.half[0]) * within(up, self.half[1])
     }
 }
