@@ -1,1 +1,27 @@
 //! Precomputes how a scene carries light.
+//!
+//! [`plan`] decides from the scene which effects are simulated; [`bake`] obeys it and returns a [`coeff_io::Prt`]
+//! that holds, per vertex, a transfer vector: its dot product with the coefficients of a light, times the albedo,
+//! is the radiance that the vertex sends out. [G] eq. (8) to (11), with the printed errors corrected.
+//!
+//! Light is carried between diffuse, two-sided surfaces. What blends or transmits lets light pass, emission is
+//! drawn but not transported, and a mask's empty parts do not exist for rays.
+
+mod bake;
+mod bundle;
+mod directions;
+mod error;
+mod field;
+mod gather;
+mod passes;
+mod plan;
+mod progress;
+mod receivers;
+mod repair;
+pub mod settings;
+mod world;
+
+pub use crate::bake::{ProgressFn, bake, plan};
+pub use error::Error;
+pub use progress::{Progress, Stage};
+pub use receivers::{Receiver, Receivers};

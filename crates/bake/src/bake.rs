@@ -1,0 +1,233 @@
+//! The bake: plan, first pass, backs, repair, bounces, file.
+
+use crate::bundle::{Baked, bundle};
+use crate::directions::DirectionBank;
+use crate::field::Field;
+use crate::gather::{Gathered, Gatherer};
+use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
+use crate::plan::{Facts, decide, simulates, tolerance};
+use crate::progress::{Progress, Stage};
+use crate::receivers::{NONE, Receivers};
+use crate::repair::{Finding, Repair};
+use crate::world::World;
+use crate::{Error, settings};
+use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Settings};
+use scene::Scene;
+use sh_math::Bands;
+use std::ops::ControlFlow;
+
+/// Called while a bake runs; returning `Break` cancels it.
+pub type ProgressFn<'a> = &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync);
+
+/// Average blockers that a receiver is assumed to see when memory is estimated.
+const TYPICAL_HITS: u64 = 256;
+
+/// Decides which effects a scene calls for; bakes nothing.
+///
+/// # Errors
+/// As [`bake`], before any ray is traced.
+pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
+    settings::check(settings)?;
+    let receivers = receivers_of(scene)?;
+    let world = World::new(scene, true)?;
+    Ok(decide(&Facts::gather(scene, &world, &receivers), settings))
+}
+
+/// Precomputes how every vertex of a scene answers to distant light.
+///
+/// The result is the same for any number of threads: each receiver's is a pure function of the scene, the settings
+/// and its index.
+///
+/// # Errors
+/// [`Error`] where the scene is empty or too large, a setting is out of range, memory does not suffice, or
+/// `progress` asked to stop.
+pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<Prt, Error> {
+    settings::check(settings)?;
+    let receivers = receivers_of(scene)?;
+    let masks = crate::plan::allows_masks(settings);
+    let world = World::new(scene, masks)?;
+    let plan = decide(&Facts::gather(scene, &world, &receivers), settings);
+    let bands = Bands::new(settings.bands).expect("checked with the settings");
+    let bank = DirectionBank::new(bands, settings);
+    let gatherer = Gatherer {
+        world: &world,
+        bank: &bank,
+        bands,
+        quality: settings.quality,
+        visibility: simulates(&plan, Effect::Visibility),
+        hits: simulates(&plan, Effect::Interreflection),
+    };
+    let baked = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)?;
+    Ok(baked)
+}
+
+fn receivers_of(scene: &Scene) -> Result<Receivers, Error> {
+    if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
+        return Err(Error::EmptyScene { scene: scene.name.clone() });
+    }
+    Ok(Receivers::of(scene))
+}
+
+/// A bake under way.
+struct Run<'a> {
+    gatherer: Gatherer<'a>,
+    receivers: Receivers,
+    settings: &'a Settings,
+    plan: Plan,
+    monitor: Monitor<'a>,
+    /// Transfer of the bounce before; after the first pass the direct one.
+    last: Field,
+    findings: Vec<Finding>,
+    errors: Vec<f32>,
+    achieved: Achieved,
+}
+
+impl<'a> Run<'a> {
+    fn new(
+        gatherer: Gatherer<'a>,
+        receivers: Receivers,
+        settings: &'a Settings,
+        plan: Plan,
+        progress: ProgressFn<'a>,
+    ) -> Result<Self, Error> {
+        let (n, coefficients, channels) = (receivers.list.len(), gatherer.bands.coefficients(), plan.channels as usize);
+        let fields = if gatherer.hits { 3 } else { 1 };
+        let needed = fields * Field::bytes(n, coefficients, channels);
+        if needed > settings.memory {
+            return Err(Error::Memory { receivers: n, needed, allowed: settings.memory });
+        }
+        Ok(Self {
+            last: Field::zeros(n, coefficients, channels),
+            findings: vec![Finding::default(); n],
+            errors: vec![0.0; n],
+            achieved: Achieved::default(),
+            monitor: Monitor::new(progress),
+            gatherer,
+            receivers,
+            settings,
+            plan,
+        })
+    }
+
+    fn finish(mut self, scene: &Scene) -> Result<Prt, Error> {
+        let all = 0..self.receivers.list.len() as u32;
+        let keep = self.gatherer.hits && self.hits_fit();
+        let mut chunks = self.first_pass(all, Stage::Visibility, keep)?;
+        let repair = Repair::plan(scene, &self.receivers, &self.findings);
+        self.achieved.repairs = repair.counts;
+        repair.apply(&mut self.last);
+        let mut transfer = self.last.clone();
+        if self.gatherer.hits {
+            chunks.extend(self.add_backs(keep)?);
+            transfer.grow(self.receivers.list.len());
+            self.bounce(&chunks, &repair, &mut transfer)?;
+        }
+        let mut openness: Vec<f32> = self.findings[..self.receivers.permanent].iter().map(|f| f.openness).collect();
+        repair.apply_scalar(&mut openness);
+        if openness.iter().all(|&o| o >= 1.0) {
+            openness.clear();
+        }
+        self.summarise(&repair);
+        let baked = Baked { transfer, openness, plan: self.plan, achieved: self.achieved };
+        Ok(bundle(scene, &self.receivers, self.settings, baked))
+    }
+
+    /// Whether what all receivers see may be kept in memory; otherwise each bounce finds it again.
+    fn hits_fit(&self) -> bool {
+        let fields = 3 * Field::bytes(self.receivers.list.len(), self.last.coefficients, self.last.channels);
+        let hits = self.plan.shadowed_receivers * TYPICAL_HITS * size_of::<crate::gather::PackedHit>() as u64;
+        fields + hits <= self.settings.memory
+    }
+
+    /// What the given receivers see directly.
+    fn first_pass(&mut self, ids: std::ops::Range<u32>, stage: Stage, keep: bool) -> Result<Vec<Chunk>, Error> {
+        let (last, findings, errors) = (&mut self.last, &mut self.findings, &mut self.errors);
+        let achieved = &mut self.achieved;
+        let (receivers, corners) = (&self.receivers, &self.gatherer.world.corners);
+        let mut wanted_backs = std::collections::BTreeSet::new();
+        let mut sink = |id: u32, seen: &Gathered| {
+            last.set_all(id, &seen.transfer);
+            findings[id as usize] = Finding { openness: seen.openness, inside_share: seen.inside_share };
+            errors[id as usize] = seen.error;
+            achieved.visibility_rays += seen.visibility_rays;
+            achieved.bounce_rays += seen.bounce_rays;
+            for hit in seen.hits.iter().filter(|h| h.triangle & crate::gather::BACK != 0) {
+                let corners = corners[(hit.triangle & !crate::gather::BACK) as usize];
+                wanted_backs.extend(corners.into_iter().filter(|&v| receivers.back_of[v as usize] == NONE));
+            }
+        };
+        let chunks = gather_pass(&self.gatherer, receivers, ids, stage, keep, &self.monitor, &mut sink)?;
+        for vertex in wanted_backs {
+            self.receivers.add_back(vertex);
+        }
+        let n = self.receivers.list.len();
+        self.last.grow(n);
+        self.findings.resize(n, Finding::default());
+        self.errors.resize(n, 0.0);
+        Ok(chunks)
+    }
+
+    /// Light reaches the backs of some surfaces: they become receivers for the time of the bake, until none is new.
+    fn add_backs(&mut self, keep: bool) -> Result<Vec<Chunk>, Error> {
+        let mut chunks = Vec::new();
+        let mut done = self.receivers.permanent as u32;
+        while (done as usize) < self.receivers.list.len() {
+            let new = done..self.receivers.list.len() as u32;
+            done = new.end;
+            chunks.extend(self.first_pass(new, Stage::Backs, keep)?);
+        }
+        Ok(chunks)
+    }
+
+    /// Bounces until the count asked for, or until what is still to come is below the tolerance.
+    fn bounce(&mut self, chunks: &[Chunk], repair: &Repair, transfer: &mut Field) -> Result<(), Error> {
+        let limit = match self.settings.bounces {
+            Bounces::Fixed(n) => n,
+            Bounces::Auto => settings::MAX_BOUNCES,
+        };
+        let mut before = 1.0;
+        for n in 1..=limit {
+            let stage = Stage::Bounce(n);
+            let mut next = bounce_pass(&self.gatherer, &self.receivers, chunks, &self.last, stage, &self.monitor)?;
+            repair.apply(&mut next);
+            transfer.add(&next);
+            let change = self.largest_norm(&next);
+            self.achieved.bounces = n;
+            self.achieved.bounce_changes.push(change as f32);
+            self.last = next;
+            if self.settings.bounces == Bounces::Auto
+                && still_to_come(change, before) <= f64::from(tolerance(self.settings.quality))
+            {
+                break;
+            }
+            before = change;
+        }
+        Ok(())
+    }
+
+    /// Largest norm of a receiver's row that goes into the file, against an open receiver's.
+    fn largest_norm(&self, field: &Field) -> f64 {
+        (0..self.receivers.permanent as u32).map(|r| field.norm(r)).fold(0.0, f64::max) / self.gatherer.bank.open_norm
+    }
+
+    fn summarise(&mut self, repair: &Repair) {
+        let mut own = vec![true; self.receivers.permanent];
+        repair.targets().for_each(|id| own[id as usize] = false);
+        let mut errors: Vec<(f32, u32)> = (0..self.receivers.permanent as u32)
+            .filter(|&id| own[id as usize])
+            .map(|id| (self.errors[id as usize], id))
+            .collect();
+        errors.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        if let Some(&(worst, id)) = errors.last() {
+            let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize].0;
+            self.achieved.error = [at(0.5), at(0.95), worst];
+            self.achieved.worst_receiver = id;
+        }
+    }
+}
+
+/// Sum of the changes to come, if each is to the last as the last was to the one before.
+fn still_to_come(change: f64, before: f64) -> f64 {
+    let ratio = if before > 0.0 { change / before } else { 0.0 };
+    if ratio < 1.0 { change * ratio / (1.0 - ratio) } else { f64::INFINITY }
+}

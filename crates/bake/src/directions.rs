@@ -1,0 +1,180 @@
+//! Ready-made sets of directions with their spherical harmonics, shared by all receivers.
+//!
+//! A receiver picks a set and a turn about its normal by a hash of its index. Directions are in the local frame
+//! (z along the normal); the local coefficients are rotated into the world once per receiver.
+
+use coeff_io::{Quality, Sampler, Settings};
+use glam::Vec3;
+use sampling::sequence::{self, Sequence};
+use sampling::{rng, warp};
+use sh_math::{Bands, zonal};
+
+/// Rays of the first step of a progressive set.
+const FIRST_STEP: usize = 128;
+/// Most rays of a progressive set.
+const LAST_STEP: usize = 1 << 14;
+/// Turns about the normal that a set may take.
+const TURNS: u64 = 256;
+
+/// One set of directions about +z.
+#[derive(Debug)]
+pub(crate) struct DirectionSet {
+    pub(crate) xs: Vec<f32>,
+    pub(crate) ys: Vec<f32>,
+    pub(crate) zs: Vec<f32>,
+    /// Relative weight of each direction: 1 where directions follow the cosine.
+    pub(crate) weights: Vec<f32>,
+    /// `[coefficient][direction]`: basis function times weight.
+    pub(crate) basis: Vec<f32>,
+    /// Ends of the steps, in directions.
+    pub(crate) steps: Vec<Step>,
+}
+
+/// The end of a step of a set, with the sums up to there over all directions.
+#[derive(Debug)]
+pub(crate) struct Step {
+    /// Directions up to here.
+    pub(crate) end: usize,
+    /// Sum of the weights up to here.
+    pub(crate) weight: f64,
+    /// Number that sums are divided by; also counts samples below the horizon where the sequence has them.
+    pub(crate) samples: f64,
+    /// Per coefficient: sum of the basis up to here.
+    pub(crate) full: Vec<f64>,
+}
+
+/// All sets of a bake.
+#[derive(Debug)]
+pub(crate) struct DirectionBank {
+    sets: Vec<DirectionSet>,
+    turns: Vec<[f32; 2]>,
+    seed: u64,
+    /// Exact transfer of an open receiver about +z.
+    pub(crate) open: Vec<f64>,
+    /// Euclidean norm of `open`.
+    pub(crate) open_norm: f64,
+}
+
+impl DirectionBank {
+    pub(crate) fn new(bands: Bands, settings: &Settings) -> Self {
+        let coefficients = bands.coefficients();
+        let n_sets = if coefficients <= 64 { 16 } else { 4 };
+        let mut open = vec![0.0f32; coefficients];
+        zonal::cosine_transfer(bands, Vec3::Z, &mut open);
+        let open: Vec<f64> = open.into_iter().map(f64::from).collect();
+        let turns = (0..TURNS).map(|i| {
+            let angle = std::f64::consts::TAU * i as f64 / TURNS as f64;
+            [libm::cos(angle) as f32, libm::sin(angle) as f32]
+        });
+        Self {
+            sets: (0..n_sets).map(|k| DirectionSet::new(bands, settings, rng::hash(settings.seed, 0x5e7, k))).collect(),
+            turns: turns.collect(),
+            seed: settings.seed,
+            open_norm: open.iter().map(|x| x * x).sum::<f64>().sqrt(),
+            open,
+        }
+    }
+
+    /// The set of a receiver, and the cosine and sine of its turn about the normal.
+    pub(crate) fn pick(&self, receiver: u32) -> (&DirectionSet, [f32; 2]) {
+        let key = rng::hash(self.seed, 0xd1c, u64::from(receiver));
+        let set = (key >> 32) as usize % self.sets.len();
+        (&self.sets[set], self.turns[(key % TURNS) as usize])
+    }
+}
+
+impl DirectionSet {
+    fn new(bands: Bands, settings: &Settings, seed: u64) -> Self {
+        let (count, ends) = steps(settings.quality);
+        let mut set = Self {
+            xs: Vec::new(),
+            ys: Vec::new(),
+            zs: Vec::new(),
+            weights: Vec::new(),
+            basis: Vec::new(),
+            steps: Vec::new(),
+        };
+        set.fill(settings.sampler, count, &ends, seed);
+        set.evaluate(bands);
+        let n = set.xs.len();
+        for end in ends {
+            // A set over the whole sphere has fewer directions than samples, and a single step.
+            let end = if settings.sampler == Sampler::Stratified { n } else { end };
+            set.steps.push(set.step(bands, end, if end == n { count } else { end }));
+        }
+        set
+    }
+
+    /// Fills in directions; within a step, neighbours in the list point in similar directions, which makes rays cheap.
+    fn fill(&mut self, sampler: Sampler, count: usize, ends: &[usize], seed: u64) {
+        let kind = match sampler {
+            Sampler::OwenSobol => Sequence::OwenSobol,
+            Sampler::Fibonacci => Sequence::Fibonacci,
+            Sampler::Stratified => Sequence::Stratified,
+        };
+        let mut points = Vec::new();
+        sequence::fill(kind, count as u32, seed, &mut points);
+        let mut start = 0;
+        for &end in ends {
+            points[start..end].sort_by_key(|&[x, y]| grid_curve(x, y));
+            start = end;
+        }
+        for point in points {
+            let (direction, weight) = match sampler {
+                Sampler::OwenSobol | Sampler::Fibonacci => (warp::square_to_cosine_hemisphere(point), 1.0),
+                // [G] eq. (21): uniform over the sphere, so the cosine is a weight: 4 pi / N * z / pi.
+                Sampler::Stratified => {
+                    let direction = warp::square_to_uniform_sphere(point);
+                    (direction, 4.0 * direction.z)
+                }
+            };
+            if direction.z > 0.0 {
+                self.xs.push(direction.x);
+                self.ys.push(direction.y);
+                self.zs.push(direction.z);
+                self.weights.push(weight);
+            }
+        }
+    }
+
+    fn evaluate(&mut self, bands: Bands) {
+        let n = self.xs.len();
+        self.basis = vec![0.0; bands.coefficients() * n];
+        sh_math::evaluate_batch(bands, &self.xs, &self.ys, &self.zs, &mut self.basis);
+        for row in self.basis.chunks_exact_mut(n.max(1)) {
+            for (value, weight) in row.iter_mut().zip(&self.weights) {
+                *value *= weight;
+            }
+        }
+    }
+
+    fn step(&self, bands: Bands, end: usize, samples: usize) -> Step {
+        let n = self.xs.len();
+        let full =
+            (0..bands.coefficients()).map(|i| self.basis[i * n..i * n + end].iter().map(|&x| f64::from(x)).sum());
+        Step {
+            end,
+            weight: self.weights[..end].iter().map(|&w| f64::from(w)).sum(),
+            samples: samples as f64,
+            full: full.collect(),
+        }
+    }
+}
+
+/// Position along a Morton curve over the unit square.
+fn grid_curve(x: f32, y: f32) -> u32 {
+    let spread = |v: f32| (0..12).fold(0u32, |key, bit| key | ((v * 4096.0) as u32 >> bit & 1) << (2 * bit));
+    spread(x) | spread(y) << 1
+}
+
+/// Number of samples of a set and the ends of its steps.
+fn steps(quality: Quality) -> (usize, Vec<usize>) {
+    match quality {
+        Quality::Rays(n) => (n as usize, vec![n as usize]),
+        Quality::Error(_) => {
+            let ends: Vec<usize> =
+                std::iter::successors(Some(FIRST_STEP), |&n| Some(n * 2)).take_while(|&n| n <= LAST_STEP).collect();
+            (LAST_STEP, ends)
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Why a bake could not be made.
+
+/// What stopped a bake; the message says what, where and what to do.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene holds nothing that can be baked.
+    #[error("scene '{scene}' has no triangles: there is nothing to bake; check that the file holds meshes")]
+    EmptyScene {
+        /// Name of the scene.
+        scene: String,
+    },
+    /// The scene is larger than the indices of the file allow.
+    #[error("scene '{scene}' has {count} {what}, but a .prt file holds at most {limit}; split the scene")]
+    TooLarge {
+        /// Name of the scene.
+        scene: String,
+        /// What there is too much of.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A setting is outside its range.
+    #[error("setting '{setting}' is {value}: {allowed}")]
+    Setting {
+        /// Name on the command line.
+        setting: &'static str,
+        /// The value given.
+        value: String,
+        /// What is allowed, as a sentence.
+        allowed: &'static str,
+    },
+    /// The coefficients do not fit into the memory allowed.
+    #[error(
+        "the transfer of {receivers} receivers needs {needed} bytes, more than the {allowed} of --memory; use fewer --bands or allow more"
+    )]
+    Memory {
+        /// Receivers of the scene.
+        receivers: usize,
+        /// Bytes that the coefficients take.
+        needed: u64,
+        /// Bytes that were allowed.
+        allowed: u64,
+    },
+    /// The progress callback asked to stop.
+    #[error("the bake was cancelled; no file was written")]
+    Cancelled,
+}

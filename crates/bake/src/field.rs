@@ -1,0 +1,69 @@
+//! One transfer vector per receiver, laid out for the sums of the bounces.
+
+/// `[receiver][channel][coefficient, padded]`.
+#[derive(Debug, Clone)]
+pub(crate) struct Field {
+    pub(crate) coefficients: usize,
+    pub(crate) channels: usize,
+    stride: usize,
+    values: Vec<f32>,
+}
+
+impl Field {
+    pub(crate) fn zeros(receivers: usize, coefficients: usize, channels: usize) -> Self {
+        let stride = coefficients.next_multiple_of(4);
+        Self { coefficients, channels, stride, values: vec![0.0; receivers * channels * stride] }
+    }
+
+    /// Bytes of a field.
+    pub(crate) fn bytes(receivers: usize, coefficients: usize, channels: usize) -> u64 {
+        (receivers * channels * coefficients.next_multiple_of(4) * 4) as u64
+    }
+
+    /// Adds receivers with zeros at the end.
+    pub(crate) fn grow(&mut self, receivers: usize) {
+        self.values.resize(receivers * self.row_len(), 0.0);
+    }
+
+    /// Values per receiver.
+    pub(crate) fn row_len(&self) -> usize {
+        self.channels * self.stride
+    }
+
+    /// All channels of one receiver.
+    pub(crate) fn row(&self, receiver: u32) -> &[f32] {
+        let n = self.row_len();
+        &self.values[receiver as usize * n..][..n]
+    }
+
+    pub(crate) fn row_mut(&mut self, receiver: u32) -> &mut [f32] {
+        let n = self.row_len();
+        &mut self.values[receiver as usize * n..][..n]
+    }
+
+    /// One channel of one receiver.
+    pub(crate) fn channel(&self, receiver: u32, channel: usize) -> &[f32] {
+        &self.row(receiver)[channel * self.stride..][..self.coefficients]
+    }
+
+    /// Sets every channel of a receiver to the same coefficients.
+    pub(crate) fn set_all(&mut self, receiver: u32, coefficients: &[f32]) {
+        let stride = self.stride;
+        for channel in self.row_mut(receiver).chunks_exact_mut(stride) {
+            channel[..coefficients.len()].copy_from_slice(coefficients);
+        }
+    }
+
+    /// Adds another field of the same shape.
+    pub(crate) fn add(&mut self, other: &Self) {
+        for (a, b) in self.values.iter_mut().zip(&other.values) {
+            *a += b;
+        }
+    }
+
+    /// Largest norm over the channels of a receiver.
+    pub(crate) fn norm(&self, receiver: u32) -> f64 {
+        let square = |c: &[f32]| c.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
+        self.row(receiver).chunks_exact(self.stride).map(square).fold(0.0, f64::max).sqrt()
+    }
+}

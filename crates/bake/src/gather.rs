@@ -1,0 +1,308 @@
+//! What one receiver sees: its direct transfer, and the surfaces that block its view.
+
+use crate::directions::{DirectionBank, DirectionSet, Step};
+use crate::receivers::Receiver;
+use crate::world::World;
+use coeff_io::Quality;
+use glam::{Mat3, Vec3};
+use raytrace::{FanState, Hit, offset_origin};
+use sampling::estimate::{Doubling, Verdict};
+use sampling::frame::Frame;
+use sh_math::{Bands, rotate::Rotation, zonal};
+
+/// All that the gathering of any receiver needs.
+pub(crate) struct Gatherer<'a> {
+    pub(crate) world: &'a World<'a>,
+    pub(crate) bank: &'a DirectionBank,
+    pub(crate) bands: Bands,
+    pub(crate) quality: Quality,
+    /// Whether rays decide what is seen.
+    pub(crate) visibility: bool,
+    /// Whether the blocking surfaces are wanted for bounces.
+    pub(crate) hits: bool,
+}
+
+/// What a receiver sees.
+#[derive(Debug, Default)]
+pub(crate) struct Gathered {
+    /// Direct transfer in world axes.
+    pub(crate) transfer: Vec<f32>,
+    /// Cosine-weighted share of the hemisphere that is open.
+    pub(crate) openness: f32,
+    /// Estimated error of `transfer` against the norm of an open receiver.
+    pub(crate) error: f32,
+    /// Any-hit rays traced.
+    pub(crate) visibility_rays: u64,
+    /// Closest-hit rays traced.
+    pub(crate) bounce_rays: u64,
+    /// Share of the blocked directions that meet the inside of a body.
+    pub(crate) inside_share: f32,
+    /// Blocking surfaces; their weights sum to `1 - openness`.
+    pub(crate) hits: Vec<PackedHit>,
+}
+
+/// A point that a receiver sees, with its share of the receiver's cosine-weighted hemisphere.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PackedHit {
+    /// Traced triangle; bit 31 where its back was hit.
+    pub(crate) triangle: u32,
+    /// Barycentrics of the second and third corner, in units of 1/65535.
+    pub(crate) barycentrics: [u16; 2],
+    /// Weight times albedo, RGB.
+    pub(crate) reflected: [f32; 3],
+}
+
+/// Bit of [`PackedHit::triangle`] for the back.
+pub(crate) const BACK: u32 = 1 << 31;
+
+/// Buffers that a thread keeps between receivers. Contents never change results.
+pub(crate) struct Worker {
+    fan: FanState,
+    directions: [Vec<f32>; 3],
+    blocked: Vec<u64>,
+    open: Vec<f32>,
+    wanted: Vec<u64>,
+    nearest: Vec<Option<Hit>>,
+}
+
+impl Worker {
+    pub(crate) fn new() -> Self {
+        Self {
+            fan: FanState::default(),
+            directions: Default::default(),
+            blocked: Vec::new(),
+            open: Vec::new(),
+            wanted: Vec::new(),
+            nearest: Vec::new(),
+        }
+    }
+}
+
+impl Gatherer<'_> {
+    /// Gathers for one receiver: a pure function of the scene, the settings and the receiver's index.
+    pub(crate) fn gather(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Gathered {
+        let above =
+            self.visibility && receiver.sound && self.world.tracer.anything_above(receiver.position, receiver.normal);
+        if !above {
+            return self.unshadowed(receiver);
+        }
+        let origin = offset_origin(receiver.position, receiver.geometric_normal);
+        let (set, turn) = self.bank.pick(index);
+        let world_from_local = turned_frame(receiver.normal, turn);
+        let seen = self.trace_visibility(origin, set, &world_from_local, worker);
+        let mut out = Gathered {
+            transfer: seen.local.iter().map(|&x| x as f32).collect(),
+            openness: seen.openness as f32,
+            error: seen.error as f32,
+            visibility_rays: set.steps[seen.step].end as u64,
+            ..Gathered::default()
+        };
+        Rotation::from_matrix(self.bands, world_from_local.as_dmat3()).apply(&mut out.transfer);
+        if seen.openness < 1.0 {
+            self.trace_blockers(origin, set, seen.step, worker, &mut out);
+        }
+        out
+    }
+
+    /// Closed form of [G] eq. (22): nothing can stand in the way.
+    fn unshadowed(&self, receiver: &Receiver) -> Gathered {
+        let mut transfer = vec![0.0; self.bands.coefficients()];
+        zonal::cosine_transfer(self.bands, receiver.normal, &mut transfer);
+        Gathered { transfer, openness: 1.0, ..Gathered::default() }
+    }
+
+    /// Doubles the rays until the estimate meets the error asked for, or the set is spent.
+    fn trace_visibility(&self, origin: Vec3, set: &DirectionSet, frame: &Mat3, worker: &mut Worker) -> Seen {
+        rotate_directions(set, frame, 0, &mut worker.directions);
+        worker.blocked.clear();
+        let rule = self.rule();
+        let mut progress = rule.start();
+        let mut sums = vec![0.0f64; self.bands.coefficients()];
+        let (mut open_weight, mut start) = (0.0, 0);
+        let mut seen = Seen { local: Vec::new(), openness: 1.0, error: 0.0, step: 0 };
+        for (index, step) in set.steps.iter().enumerate() {
+            rotate_directions(set, frame, step.end, &mut worker.directions);
+            self.trace_step(origin, start..step.end, worker);
+            add_open(set, start..step.end, &worker.open, &mut sums);
+            open_weight += dot(&set.weights[start..step.end], &worker.open);
+            start = step.end;
+            seen.step = index;
+            seen.openness = open_weight / step.weight;
+            seen.local = self.corrected(&sums, seen.openness, step);
+            match rule.look(&mut progress, step.end as u32, &seen.local) {
+                Verdict::Continue { .. } => {}
+                Verdict::Reached { error } | Verdict::Exhausted { error } => {
+                    seen.error = if error.is_finite() { error / self.bank.open_norm } else { 0.0 };
+                    break;
+                }
+            }
+        }
+        seen
+    }
+
+    /// The stopping rule in the unit of the coefficients.
+    fn rule(&self) -> Doubling {
+        let tolerance = match self.quality {
+            Quality::Error(asked) => f64::from(asked) * self.bank.open_norm,
+            Quality::Rays(_) => 0.0,
+        };
+        Doubling { first: 0, last: u32::MAX, tolerance, passes: 1 }
+    }
+
+    /// Adds to the sum over open directions what the sequence misses of the exact cosine lobe, in proportion to
+    /// the share that is open: exact where nothing is blocked, and the constant term is exactly the open share.
+    fn corrected(&self, sums: &[f64], openness: f64, step: &Step) -> Vec<f64> {
+        let terms = sums.iter().zip(&step.full).zip(&self.bank.open);
+        terms.map(|((sum, full), open)| sum / step.samples + openness * (open - full / step.samples)).collect()
+    }
+
+    fn trace_step(&self, origin: Vec3, range: std::ops::Range<usize>, worker: &mut Worker) {
+        let first_word = range.start / 64;
+        worker.blocked.resize(range.end.div_ceil(64), 0);
+        let [xs, ys, zs] = &worker.directions;
+        let solid = |triangle, u, v| self.world.solid(triangle, u, v);
+        self.world.tracer.occluded_fan(
+            origin,
+            &xs[range.clone()],
+            &ys[range.clone()],
+            &zs[range.clone()],
+            &solid,
+            &mut worker.fan,
+            &mut worker.blocked[first_word..],
+        );
+        worker.open.clear();
+        worker.open.extend(range.map(|j| if is_set(&worker.blocked, j) { 0.0 } else { 1.0 }));
+    }
+
+    /// Finds the nearest surface along blocked directions: [G] eq. (11) gathers over these only.
+    fn trace_blockers(&self, origin: Vec3, set: &DirectionSet, step: usize, worker: &mut Worker, out: &mut Gathered) {
+        let end = set.steps[step].end;
+        out.bounce_rays = self.choose(end, worker);
+        worker.nearest.clear();
+        worker.nearest.resize(end, None);
+        let [xs, ys, zs] = &worker.directions;
+        let solid = |triangle, u, v| self.world.solid(triangle, u, v);
+        let tracer = &self.world.tracer;
+        tracer.closest_fan(origin, xs, ys, zs, &worker.wanted, &solid, &mut worker.fan, &mut worker.nearest);
+        self.pack(set, worker, out);
+    }
+
+    /// Picks the blocked directions whose blockers are looked up: all of them, or an even part where rays go on until
+    /// an error is met, since light that bounced varies less than visibility. Returns their number.
+    fn choose(&self, end: usize, worker: &mut Worker) -> u64 {
+        let wanted = match self.quality {
+            _ if !self.hits => PROBES,
+            Quality::Rays(_) => end,
+            Quality::Error(_) => (end / 2).clamp(MIN_BLOCKERS, MAX_BLOCKERS),
+        };
+        let blocked: usize = worker.blocked.iter().map(|w| w.count_ones() as usize).sum();
+        worker.wanted.clear();
+        worker.wanted.resize(worker.blocked.len(), 0);
+        let chosen = blocked.min(wanted);
+        let mut seen = 0;
+        for j in (0..end).filter(|&j| is_set(&worker.blocked, j)) {
+            // The k-th of the chosen is the first that reaches k / chosen of all blocked.
+            let (before, after) = (seen * chosen / blocked, (seen + 1) * chosen / blocked);
+            if after > before {
+                worker.wanted[j / 64] |= 1 << (j % 64);
+            }
+            seen += 1;
+        }
+        chosen as u64
+    }
+
+    fn pack(&self, set: &DirectionSet, worker: &Worker, out: &mut Gathered) {
+        let found = || worker.nearest.iter().enumerate().filter_map(|(j, hit)| hit.map(|h| (j, h)));
+        let total: f64 = found().map(|(j, _)| f64::from(set.weights[j])).sum();
+        if total <= 0.0 {
+            return;
+        }
+        let scale = (1.0 - f64::from(out.openness)) / total;
+        let mut inside = 0.0;
+        for (j, hit) in found() {
+            let weight = f64::from(set.weights[j]);
+            if !hit.front && !self.world.double_sided(hit.triangle) {
+                inside += weight;
+            }
+            if self.hits {
+                out.hits.push(self.packed(&hit, (weight * scale) as f32));
+            }
+        }
+        out.inside_share = (inside / total) as f32;
+    }
+
+    fn packed(&self, hit: &Hit, weight: f32) -> PackedHit {
+        let albedo = self.world.albedo(hit.triangle, hit.u, hit.v);
+        PackedHit {
+            triangle: hit.triangle | if hit.front { 0 } else { BACK },
+            barycentrics: [quantised(hit.u), quantised(hit.v)],
+            reflected: (albedo * weight).to_array(),
+        }
+    }
+}
+
+/// Blockers looked up only to tell whether a receiver is inside a body.
+const PROBES: usize = 32;
+/// Fewest blockers looked up for bounces.
+const MIN_BLOCKERS: usize = 64;
+/// Most blockers looked up for bounces.
+const MAX_BLOCKERS: usize = 1024;
+
+/// What the any-hit rays found, in the local frame.
+struct Seen {
+    local: Vec<f64>,
+    openness: f64,
+    error: f64,
+    step: usize,
+}
+
+/// Columns: tangent, bitangent, normal; turned about the normal.
+fn turned_frame(normal: Vec3, [cos, sin]: [f32; 2]) -> Mat3 {
+    let frame = Frame::from_normal(normal);
+    let (x, y) = (frame.to_world(Vec3::X), frame.to_world(Vec3::Y));
+    Mat3::from_cols(cos * x + sin * y, cos * y - sin * x, normal)
+}
+
+/// Fills world directions up to `end`, keeping those that are there; `end` 0 clears.
+fn rotate_directions(set: &DirectionSet, frame: &Mat3, end: usize, world: &mut [Vec<f32>; 3]) {
+    for (axis, out) in world.iter_mut().enumerate() {
+        let start = if end == 0 { 0 } else { out.len() };
+        out.truncate(start);
+        let (a, b, c) = (frame.x_axis[axis], frame.y_axis[axis], frame.z_axis[axis]);
+        let local = set.xs[start..end].iter().zip(&set.ys[start..end]).zip(&set.zs[start..end]);
+        out.extend(local.map(|((x, y), z)| a * x + b * y + c * z));
+    }
+}
+
+/// Adds the basis of the open directions of a step to the sums.
+fn add_open(set: &DirectionSet, range: std::ops::Range<usize>, open: &[f32], sums: &mut [f64]) {
+    let n = set.xs.len();
+    for (i, sum) in sums.iter_mut().enumerate() {
+        *sum += dot(&set.basis[i * n + range.start..i * n + range.end], open);
+    }
+}
+
+/// Dot product in eight lanes and blocks of 512: a fixed order that vectorises, with f64 between blocks.
+fn dot(a: &[f32], b: &[f32]) -> f64 {
+    let mut total = 0.0f64;
+    for (a, b) in a.chunks(512).zip(b.chunks(512)) {
+        let mut lanes = [0.0f32; 8];
+        let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
+        let rest: f32 = a8.remainder().iter().zip(b8.remainder()).map(|(x, y)| x * y).sum();
+        for (x, y) in a8.zip(b8) {
+            for k in 0..8 {
+                lanes[k] += x[k] * y[k];
+            }
+        }
+        total += lanes.iter().map(|&x| f64::from(x)).sum::<f64>() + f64::from(rest);
+    }
+    total
+}
+
+fn is_set(bits: &[u64], j: usize) -> bool {
+    bits[j / 64] >> (j % 64) & 1 == 1
+}
+
+fn quantised(x: f32) -> u16 {
+    (x.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+}

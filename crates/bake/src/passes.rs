@@ -1,0 +1,194 @@
+//! Runs receivers over the threads: the first pass, and one pass per bounce.
+
+use crate::field::Field;
+use crate::gather::{BACK, Gathered, Gatherer, PackedHit, Worker};
+use crate::progress::{Progress, Stage};
+use crate::receivers::{Receivers, morton_order};
+use crate::{Error, ProgressFn};
+use rayon::prelude::*;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Receivers that a thread takes at a time.
+const CHUNK: usize = 64;
+/// Receivers between two calls of the progress callback: a few milliseconds, so that a cancel is quick.
+const REPORT: u64 = 8;
+
+/// Counts what is done and passes it on; remembers a wish to stop.
+pub(crate) struct Monitor<'a> {
+    callback: ProgressFn<'a>,
+    cancelled: AtomicBool,
+    done: AtomicU64,
+    rays: AtomicU64,
+}
+
+impl<'a> Monitor<'a> {
+    pub(crate) fn new(callback: ProgressFn<'a>) -> Self {
+        Self { callback, cancelled: AtomicBool::new(false), done: AtomicU64::new(0), rays: AtomicU64::new(0) }
+    }
+
+    pub(crate) fn begin(&self, stage: Stage, total: u64) {
+        self.done.store(0, Ordering::Relaxed);
+        self.report(stage, 0, total);
+    }
+
+    /// Counts one receiver; false when the bake is to stop.
+    fn receiver_done(&self, stage: Stage, total: u64, rays: u64) -> bool {
+        self.rays.fetch_add(rays, Ordering::Relaxed);
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(REPORT) || done == total {
+            self.report(stage, done, total);
+        }
+        !self.cancelled.load(Ordering::Relaxed)
+    }
+
+    fn report(&self, stage: Stage, done: u64, total: u64) {
+        let rays = self.rays.load(Ordering::Relaxed);
+        if let ControlFlow::Break(()) = (self.callback)(&Progress { stage, done, total, rays }) {
+            self.cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        if self.cancelled.load(Ordering::Relaxed) { Err(Error::Cancelled) } else { Ok(()) }
+    }
+}
+
+/// Receivers that are worked on together, with what they see where that is kept.
+pub(crate) struct Chunk {
+    ids: Vec<u32>,
+    seen: Option<SeenSurfaces>,
+}
+
+/// The surfaces that the receivers of a chunk see.
+struct SeenSurfaces {
+    ends: Vec<u32>,
+    hits: Vec<PackedHit>,
+}
+
+/// What the first pass hands on, receiver by receiver.
+pub(crate) type Sink<'s> = dyn FnMut(u32, &Gathered) + 's;
+
+/// Gathers for the given receivers; `keep` says whether what they see is kept for the bounces.
+pub(crate) fn gather_pass(
+    gatherer: &Gatherer<'_>,
+    receivers: &Receivers,
+    ids: std::ops::Range<u32>,
+    stage: Stage,
+    keep: bool,
+    monitor: &Monitor<'_>,
+    sink: &mut Sink<'_>,
+) -> Result<Vec<Chunk>, Error> {
+    let order = morton_order(&receivers.list, ids);
+    let total = order.len() as u64;
+    monitor.begin(stage, total);
+    let mut chunks = Vec::new();
+    // Blocks bound the memory that results take before they are handed on.
+    for block in order.chunks(CHUNK * 1024) {
+        let gathered: Vec<(Vec<u32>, Vec<Gathered>)> = block
+            .par_chunks(CHUNK)
+            .map_init(Worker::new, |worker, ids| {
+                let mut results = Vec::with_capacity(ids.len());
+                for &id in ids {
+                    let result = gatherer.gather(&receivers.list[id as usize], id, worker);
+                    let go_on = monitor.receiver_done(stage, total, result.visibility_rays + result.bounce_rays);
+                    results.push(result);
+                    if !go_on {
+                        break;
+                    }
+                }
+                (ids.to_vec(), results)
+            })
+            .collect();
+        monitor.check()?;
+        for (ids, results) in gathered {
+            for (&id, result) in ids.iter().zip(&results) {
+                sink(id, result);
+            }
+            let seen = keep.then(|| SeenSurfaces::of(&results));
+            chunks.push(Chunk { ids, seen });
+        }
+    }
+    Ok(chunks)
+}
+
+impl SeenSurfaces {
+    fn of(results: &[Gathered]) -> Self {
+        let mut seen = Self { ends: Vec::with_capacity(results.len()), hits: Vec::new() };
+        seen.hits.reserve_exact(results.iter().map(|r| r.hits.len()).sum());
+        for result in results {
+            seen.hits.extend_from_slice(&result.hits);
+            seen.ends.push(seen.hits.len() as u32);
+        }
+        seen
+    }
+
+    fn of_receiver(&self, k: usize) -> &[PackedHit] {
+        let start = if k == 0 { 0 } else { self.ends[k - 1] as usize };
+        &self.hits[start..self.ends[k] as usize]
+    }
+}
+
+/// One bounce, [G] eq. (11): every receiver sums what the surfaces that it sees send on of the bounce before.
+pub(crate) fn bounce_pass(
+    gatherer: &Gatherer<'_>,
+    receivers: &Receivers,
+    chunks: &[Chunk],
+    last: &Field,
+    stage: Stage,
+    monitor: &Monitor<'_>,
+) -> Result<Field, Error> {
+    let total = chunks.iter().map(|c| c.ids.len() as u64).sum();
+    monitor.begin(stage, total);
+    let mut next = Field::zeros(receivers.list.len(), last.coefficients, last.channels);
+    for block in chunks.chunks(1024) {
+        let rows: Vec<Vec<f32>> = block
+            .par_iter()
+            .map_init(Worker::new, |worker, chunk| {
+                let mut rows = vec![0.0; chunk.ids.len() * last.row_len()];
+                for ((k, &id), row) in chunk.ids.iter().enumerate().zip(rows.chunks_exact_mut(last.row_len())) {
+                    let mut rays = 0;
+                    match &chunk.seen {
+                        Some(seen) => add_reflected(gatherer, receivers, seen.of_receiver(k), last, row),
+                        None => {
+                            // Too much to keep: what the receiver sees is found again.
+                            let again = gatherer.gather(&receivers.list[id as usize], id, worker);
+                            rays = again.visibility_rays + again.bounce_rays;
+                            add_reflected(gatherer, receivers, &again.hits, last, row);
+                        }
+                    }
+                    if !monitor.receiver_done(stage, total, rays) {
+                        break;
+                    }
+                }
+                rows
+            })
+            .collect();
+        monitor.check()?;
+        for (chunk, rows) in block.iter().zip(rows) {
+            for (&id, row) in chunk.ids.iter().zip(rows.chunks_exact(last.row_len())) {
+                next.row_mut(id).copy_from_slice(row);
+            }
+        }
+    }
+    Ok(next)
+}
+
+/// Adds albedo times interpolated transfer of every surface seen.
+fn add_reflected(gatherer: &Gatherer<'_>, receivers: &Receivers, hits: &[PackedHit], last: &Field, row: &mut [f32]) {
+    let stride = row.len() / last.channels;
+    for hit in hits {
+        let corners = gatherer.world.corners[(hit.triangle & !BACK) as usize];
+        let [u, v] = hit.barycentrics.map(|b| f32::from(b) / 65535.0);
+        for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
+            let id = if hit.triangle & BACK == 0 { corner } else { receivers.back_of[corner as usize] };
+            let from = last.row(id);
+            for (c, (out, from)) in row.chunks_exact_mut(stride).zip(from.chunks_exact(stride)).enumerate() {
+                let factor = share * hit.reflected[c];
+                for (o, f) in out.iter_mut().zip(from) {
+                    *o += factor * f;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Where transfer is computed: the vertices of the scene, and the backs of two-sided surfaces.
+
+use glam::Vec3;
+use scene::{Mesh, Scene};
+
+/// No receiver.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// A point with a normal that gathers light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Receiver {
+    /// World space, metres; drawn in from open borders, so that a corner between two meshes is seen from inside.
+    pub position: Vec3,
+    /// Unit shading normal: the cosine is taken about it.
+    pub normal: Vec3,
+    /// Unit normal of the surface itself: rays start off along it.
+    pub geometric_normal: Vec3,
+    /// Whether there is a normal at all; a receiver without one is repaired from its neighbours.
+    pub sound: bool,
+}
+
+/// All receivers of a scene. Vertex `v` of the flattened scene is receiver `v`.
+#[derive(Debug, Clone)]
+pub struct Receivers {
+    /// The receivers; fronts first, then backs.
+    pub list: Vec<Receiver>,
+    /// Number of vertices of the scene, which are the first receivers.
+    pub vertices: usize,
+    /// Receivers that go into the file: fronts and the backs of two-sided materials.
+    pub permanent: usize,
+    /// Of each vertex the receiver on its back, or `u32::MAX`.
+    pub back_of: Vec<u32>,
+    /// Normals that had to be replaced by those of the faces.
+    pub replaced_normals: usize,
+}
+
+impl Receivers {
+    /// Makes a receiver of every vertex, and one more for the back where a material is two-sided.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let mut all = Self { list: Vec::new(), vertices: 0, permanent: 0, back_of: Vec::new(), replaced_normals: 0 };
+        for mesh in &scene.meshes {
+            all.add_mesh(mesh);
+        }
+        all.vertices = all.list.len();
+        all.back_of = vec![NONE; all.vertices];
+        let mut first = 0;
+        for mesh in &scene.meshes {
+            if scene.materials[mesh.material as usize].double_sided {
+                for vertex in first..first + mesh.positions.len() {
+                    all.add_back(vertex as u32);
+                }
+            }
+            first += mesh.positions.len();
+        }
+        all.permanent = all.list.len();
+        all
+    }
+
+    /// Adds the back of a vertex if it has none yet, and returns its receiver.
+    pub(crate) fn add_back(&mut self, vertex: u32) -> u32 {
+        if self.back_of[vertex as usize] == NONE {
+            self.back_of[vertex as usize] = self.list.len() as u32;
+            let front = self.list[vertex as usize];
+            self.list.push(Receiver { normal: -front.normal, geometric_normal: -front.geometric_normal, ..front });
+        }
+        self.back_of[vertex as usize]
+    }
+
+    fn add_mesh(&mut self, mesh: &Mesh) {
+        let faces = FaceSums::of(mesh);
+        for vertex in 0..mesh.positions.len() {
+            let geometric = faces.normal[vertex].try_normalize();
+            let shading = mesh.normals.get(vertex).and_then(|n| n.try_normalize());
+            let normal = match (shading, geometric) {
+                (Some(s), Some(g)) if s.dot(g) > 0.0 => s,
+                (_, Some(g)) => {
+                    self.replaced_normals += 1;
+                    g
+                }
+                (s, None) => s.unwrap_or(Vec3::Y),
+            };
+            let geometric_normal = geometric.unwrap_or(normal);
+            self.list.push(Receiver {
+                position: drawn_in(mesh.positions[vertex], faces.centre(vertex), geometric_normal),
+                normal,
+                geometric_normal,
+                sound: shading.is_some() || geometric.is_some(),
+            });
+        }
+    }
+}
+
+/// Share of the way from a vertex to the middle of its triangles by which a receiver on a border is drawn in.
+/// Exactly on the border, rays towards a wall that stands there would start inside the wall.
+const DRAW_IN: f32 = 1e-3;
+
+/// Draws a point in from the border of its mesh, but never below the surface.
+fn drawn_in(position: Vec3, centre: Vec3, normal: Vec3) -> Vec3 {
+    let way = centre - position;
+    let sunk = way.dot(normal).min(0.0);
+    position + DRAW_IN * (way - sunk * normal)
+}
+
+/// Sums over the triangles around each vertex of a mesh.
+struct FaceSums {
+    /// Area-weighted normals.
+    normal: Vec<Vec3>,
+    /// Area-weighted centres, with the weight in `area`.
+    centre: Vec<Vec3>,
+    area: Vec<f32>,
+    positions: Vec<Vec3>,
+}
+
+impl FaceSums {
+    fn of(mesh: &Mesh) -> Self {
+        let n = mesh.positions.len();
+        let mut sums = Self {
+            normal: vec![Vec3::ZERO; n],
+            centre: vec![Vec3::ZERO; n],
+            area: vec![0.0; n],
+            positions: mesh.positions.clone(),
+        };
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+            let cross = (b - a).cross(c - a);
+            let area = cross.length();
+            for &v in triangle {
+                let v = v as usize;
+                sums.normal[v] += cross;
+                // Relative to the vertex: far from the origin a sum of positions would lose digits.
+                sums.centre[v] +=
+                    area * ((a - mesh.positions[v]) + (b - mesh.positions[v]) + (c - mesh.positions[v])) / 3.0;
+                sums.area[v] += area;
+            }
+        }
+        sums
+    }
+
+    fn centre(&self, vertex: usize) -> Vec3 {
+        let at = self.positions[vertex];
+        if self.area[vertex] > 0.0 { at + self.centre[vertex] / self.area[vertex] } else { at }
+    }
+}
+
+/// Ids of the receivers in `range` along a Morton curve through their positions: neighbours see alike.
+pub(crate) fn morton_order(list: &[Receiver], ids: impl Iterator<Item = u32>) -> Vec<u32> {
+    let finite = || list.iter().map(|r| r.position).filter(|p| p.is_finite());
+    let low = finite().fold(Vec3::INFINITY, Vec3::min);
+    let size = (finite().fold(Vec3::NEG_INFINITY, Vec3::max) - low).max_element().max(f32::MIN_POSITIVE);
+    let mut keyed: Vec<(u64, u32)> = ids
+        .map(|id| {
+            let cell =
+                ((list[id as usize].position - low) / size * 2_097_151.0).clamp(Vec3::ZERO, Vec3::splat(2_097_151.0));
+            (spread(cell.x as u64) | spread(cell.y as u64) << 1 | spread(cell.z as u64) << 2, id)
+        })
+        .collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, id)| id).collect()
+}
+
+/// Spreads 21 bits so that two zero bits follow each.
+fn spread(x: u64) -> u64 {
+    let mut x = x & 0x1f_ffff;
+    for (shift, mask) in [
+        (32, 0x1f_0000_0000_ffff),
+        (16, 0x1f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        x = (x | x << shift) & mask;
+    }
+    x
+}

@@ -1,0 +1,133 @@
+//! Mends receivers that cannot see: inside geometry, or without a normal.
+
+use crate::field::Field;
+use crate::receivers::{NONE, Receivers};
+use coeff_io::RepairCounts;
+use scene::Scene;
+
+/// More than this share of what a receiver sees being the insides of bodies means that it is inside one.
+const INSIDE: f32 = 0.5;
+
+/// Which receivers take the mean of which neighbours. In this order, later ones may draw on earlier ones.
+#[derive(Debug, Default)]
+pub(crate) struct Repair {
+    targets: Vec<(u32, Vec<u32>)>,
+    pub(crate) counts: RepairCounts,
+}
+
+/// What the first pass found out about a receiver.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Finding {
+    pub(crate) openness: f32,
+    pub(crate) inside_share: f32,
+}
+
+impl Repair {
+    /// Finds broken receivers among those that go into the file, and sound neighbours for them.
+    pub(crate) fn plan(scene: &Scene, receivers: &Receivers, findings: &[Finding]) -> Self {
+        let mut repair = Self::default();
+        let mut broken = vec![false; receivers.permanent];
+        for (id, flag) in broken.iter_mut().enumerate() {
+            let finding = findings[id];
+            let inside = finding.openness < 0.5 && finding.inside_share > INSIDE;
+            let unsound = !receivers.list[id].sound;
+            repair.counts.bad_normals += u32::from(unsound);
+            repair.counts.inside += u32::from(inside && !unsound);
+            *flag = inside || unsound;
+        }
+        if broken.iter().any(|&b| b) {
+            let neighbours = Neighbours::of(scene, receivers);
+            repair.spread(&neighbours, &mut broken);
+        }
+        repair.counts.bad_normals += receivers.replaced_normals as u32;
+        repair.counts.unrepaired = broken.iter().filter(|&&b| b).count() as u32;
+        repair
+    }
+
+    /// Ring by ring, gives every broken receiver its neighbours that are sound by then.
+    fn spread(&mut self, neighbours: &Neighbours, broken: &mut [bool]) {
+        loop {
+            let ring: Vec<(u32, Vec<u32>)> = (0..broken.len() as u32)
+                .filter(|&id| broken[id as usize])
+                .map(|id| {
+                    let sound = neighbours.around(id).iter().copied().filter(|&n| !broken[n as usize]);
+                    (id, sound.collect::<Vec<u32>>())
+                })
+                .filter(|(_, sources)| !sources.is_empty())
+                .collect();
+            if ring.is_empty() {
+                return;
+            }
+            for (id, _) in &ring {
+                broken[*id as usize] = false;
+            }
+            self.targets.extend(ring);
+        }
+    }
+
+    /// Replaces the broken rows of a field.
+    pub(crate) fn apply(&self, field: &mut Field) {
+        for (target, sources) in &self.targets {
+            let mut mean = vec![0.0f32; field.row_len()];
+            for &source in sources {
+                for (m, x) in mean.iter_mut().zip(field.row(source)) {
+                    *m += x / sources.len() as f32;
+                }
+            }
+            field.row_mut(*target).copy_from_slice(&mean);
+        }
+    }
+
+    /// Replaces the broken values of one number per receiver.
+    pub(crate) fn apply_scalar(&self, values: &mut [f32]) {
+        for (target, sources) in &self.targets {
+            let sum: f32 = sources.iter().map(|&s| values[s as usize]).sum();
+            values[*target as usize] = sum / sources.len() as f32;
+        }
+    }
+
+    /// Receivers whose values are not their own.
+    pub(crate) fn targets(&self) -> impl Iterator<Item = u32> + '_ {
+        self.targets.iter().map(|(id, _)| *id)
+    }
+}
+
+/// Which receivers share an edge, as compressed rows.
+struct Neighbours {
+    starts: Vec<u32>,
+    list: Vec<u32>,
+}
+
+impl Neighbours {
+    fn of(scene: &Scene, receivers: &Receivers) -> Self {
+        let mut edges: Vec<(u32, u32)> = Vec::new();
+        let mut first = 0u32;
+        for mesh in &scene.meshes {
+            for triangle in &mesh.triangles {
+                let ids = triangle.map(|v| v + first);
+                for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (ids[i], ids[j])) {
+                    edges.extend([(a, b), (b, a)]);
+                    let (back_a, back_b) = (receivers.back_of[a as usize], receivers.back_of[b as usize]);
+                    if back_a != NONE && back_b != NONE && (back_a.max(back_b) as usize) < receivers.permanent {
+                        edges.extend([(back_a, back_b), (back_b, back_a)]);
+                    }
+                }
+            }
+            first += mesh.positions.len() as u32;
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let mut starts = vec![0u32; receivers.permanent + 1];
+        for &(a, _) in &edges {
+            starts[a as usize + 1] += 1;
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        Self { starts, list: edges.into_iter().map(|(_, b)| b).collect() }
+    }
+
+    fn around(&self, id: u32) -> &[u32] {
+        &self.list[self.starts[id as usize] as usize..self.starts[id as usize + 1] as usize]
+    }
+}

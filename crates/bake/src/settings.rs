@@ -1,0 +1,59 @@
+//! Presets and limits of the bake settings.
+
+use crate::Error;
+use coeff_io::{Bounces, Effects, Quality, Sampler, Settings};
+
+/// Most bands that a bake may ask for: 1,024 coefficients per receiver and channel.
+pub const MAX_BANDS: u32 = 32;
+/// Most rays per receiver.
+pub const MAX_RAYS: u32 = 1 << 16;
+/// Most bounces.
+pub const MAX_BOUNCES: u32 = 1000;
+
+/// What the command line bakes by default: 5 bands to a relative error of 1 %.
+#[must_use]
+pub fn standard() -> Settings {
+    Settings {
+        bands: 5,
+        quality: Quality::Error(0.01),
+        bounces: Bounces::Auto,
+        effects: Effects::Auto,
+        sampler: Sampler::OwenSobol,
+        seed: 0,
+        memory: 4 << 30,
+    }
+}
+
+/// A quick look: 3 bands to a relative error of 5 %.
+#[must_use]
+pub fn preview() -> Settings {
+    Settings { bands: 3, quality: Quality::Error(0.05), ..standard() }
+}
+
+/// Checks every setting against its range.
+///
+/// # Errors
+/// [`Error::Setting`] names the first setting that is outside its range.
+pub fn check(settings: &Settings) -> Result<(), Error> {
+    let refuse = |setting, value: String, allowed| Err(Error::Setting { setting, value, allowed });
+    if settings.bands == 0 || settings.bands > MAX_BANDS {
+        return refuse("--bands", settings.bands.to_string(), "use 1 to 32");
+    }
+    match settings.quality {
+        Quality::Rays(n) if n == 0 || n > MAX_RAYS => {
+            return refuse("--rays", n.to_string(), "use 1 to 65536");
+        }
+        Quality::Error(e) if !(1e-4..=1.0).contains(&e) => {
+            return refuse("--error", e.to_string(), "use 0.0001 to 1");
+        }
+        Quality::Error(_) if settings.sampler != Sampler::OwenSobol => {
+            let allowed = "only the Owen-scrambled Sobol sequence can go on until an error is met; give --rays as well";
+            return refuse("--sampler", format!("{:?}", settings.sampler), allowed);
+        }
+        Quality::Rays(_) | Quality::Error(_) => {}
+    }
+    match settings.bounces {
+        Bounces::Fixed(n) if n > MAX_BOUNCES => refuse("--bounces", n.to_string(), "use 0 to 1000, or auto"),
+        Bounces::Fixed(_) | Bounces::Auto => Ok(()),
+    }
+}

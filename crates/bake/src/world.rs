@@ -1,0 +1,94 @@
+//! The scene as rays meet it: one list of triangles, and what a hit needs to know.
+
+use crate::Error;
+use glam::Vec3;
+use raytrace::Tracer;
+use scene::{AlphaMode, Scene};
+
+/// Bit 31 of a packed triangle says that its back was hit.
+const MAX_TRIANGLES: usize = (1 << 31) - 1;
+
+/// All surfaces that block light, flattened.
+pub(crate) struct World<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) tracer: Tracer,
+    /// Of each traced triangle: its corners as vertices of the whole scene.
+    pub(crate) corners: Vec<[u32; 3]>,
+    /// Of each traced triangle: its mesh.
+    mesh: Vec<u32>,
+    /// Of each traced triangle: its index within the mesh.
+    local: Vec<u32>,
+    /// Whether any traced triangle has a mask.
+    has_masks: bool,
+}
+
+impl<'a> World<'a> {
+    /// Flattens the scene and builds the tree; `masks` says whether alpha masks let rays pass.
+    pub(crate) fn new(scene: &'a Scene, masks: bool) -> Result<Self, Error> {
+        let mut world = Self {
+            scene,
+            tracer: Tracer::build(&[], &[], &[]),
+            corners: Vec::new(),
+            mesh: Vec::new(),
+            local: Vec::new(),
+            has_masks: false,
+        };
+        let mut positions: Vec<Vec3> = Vec::new();
+        let mut masked = Vec::new();
+        for (m, mesh) in scene.meshes.iter().enumerate() {
+            let material = &scene.materials[mesh.material as usize];
+            let first = positions.len() as u32;
+            positions.extend_from_slice(&mesh.positions);
+            check_count(scene, "vertices", positions.len(), u32::MAX as usize / 2)?;
+            if !material.blocks_rays() {
+                continue;
+            }
+            let has_mask = masks && material.is_masked();
+            world.has_masks |= has_mask;
+            for (t, corners) in mesh.triangles.iter().enumerate() {
+                world.corners.push(corners.map(|v| v + first));
+                world.mesh.push(m as u32);
+                world.local.push(t as u32);
+                masked.push(has_mask);
+            }
+            check_count(scene, "triangles", world.corners.len(), MAX_TRIANGLES)?;
+        }
+        if !world.has_masks {
+            masked.clear();
+        }
+        world.tracer = Tracer::build(&positions, &world.corners, &masked);
+        Ok(world)
+    }
+
+    /// Whether the surface is there at a point of a masked triangle.
+    pub(crate) fn solid(&self, triangle: u32, u: f32, v: f32) -> bool {
+        let (mesh, local) = self.locate(triangle);
+        match self.scene.materials[self.scene.meshes[mesh].material as usize].alpha {
+            AlphaMode::Mask(cutoff) => self.scene.coverage(mesh, local, u, v) >= cutoff,
+            AlphaMode::Opaque | AlphaMode::Blend => true,
+        }
+    }
+
+    /// Diffuse albedo at a point of a traced triangle, linear, in [0, 1].
+    pub(crate) fn albedo(&self, triangle: u32, u: f32, v: f32) -> Vec3 {
+        let (mesh, local) = self.locate(triangle);
+        self.scene.albedo(mesh, local, u, v)
+    }
+
+    /// Whether the back of a triangle is a real surface rather than the inside of a body.
+    pub(crate) fn double_sided(&self, triangle: u32) -> bool {
+        let (mesh, _) = self.locate(triangle);
+        self.scene.materials[self.scene.meshes[mesh].material as usize].double_sided
+    }
+
+    fn locate(&self, triangle: u32) -> (usize, usize) {
+        (self.mesh[triangle as usize] as usize, self.local[triangle as usize] as usize)
+    }
+}
+
+fn check_count(scene: &Scene, what: &'static str, count: usize, limit: usize) -> Result<(), Error> {
+    if count > limit {
+        return Err(Error::TooLarge { scene: scene.name.clone(), what, count, limit });
+    }
+    Ok(())
+}
