@@ -5,15 +5,26 @@
 
 mod bounds;
 mod error;
+mod folder;
+mod gltf;
 pub mod known;
+mod load;
 mod model;
+mod normals;
+mod obj;
+mod picture;
+mod repair;
 mod surface;
+mod tangents;
 mod texture;
+mod uri;
 mod vertices;
+mod weld;
 
 pub use bounds::{Bounds, default_camera};
 pub use error::Error;
 pub use known::{BUILTINS, builtin};
+pub use load::load;
 pub use model::{
     AlphaMode, Camera, LightKind, Material, Mesh, PunctualLight, Report, Scene, Texture, TextureSlot, Warning, Wrap,
 };

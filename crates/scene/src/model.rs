@@ -133,7 +133,7 @@ pub struct Texture {
 }
 
 /// What a texture shows outside [0, 1].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// Tiles.
     Repeat,
@@ -198,6 +198,8 @@ pub struct Report {
     pub degenerate_triangles: usize,
     /// Vertices that no triangle used, dropped.
     pub unused_vertices: usize,
+    /// Vertices that equalled another in every attribute, merged.
+    pub duplicate_vertices: usize,
     /// Normals generated or repaired.
     pub generated_normals: usize,
 }

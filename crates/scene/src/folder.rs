@@ -1,0 +1,99 @@
+//! The files that a scene file may refer to: those in its own folder, never the network.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Largest file that is read, bytes (2 GiB): a guard against devices and mistakes.
+pub(crate) const MAX_FILE_BYTES: u64 = 2 << 30;
+
+/// Why a referenced file is not there.
+#[derive(Debug)]
+pub(crate) enum Missing {
+    /// The reference itself is refused; says why.
+    Refused(String),
+    /// The file cannot be read.
+    Io(PathBuf, std::io::Error),
+}
+
+impl std::fmt::Display for Missing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Refused(why) => f.write_str(why),
+            Self::Io(path, error) => write!(f, "{}: {error}", path.display()),
+        }
+    }
+}
+
+/// Reads a whole regular file of at most [`MAX_FILE_BYTES`].
+pub(crate) fn read_file(path: &Path) -> std::io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    if !metadata.is_file() {
+        return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, "not a regular file"));
+    }
+    if metadata.len() > MAX_FILE_BYTES {
+        let what = format!("{} bytes; at most {MAX_FILE_BYTES} are read", metadata.len());
+        return Err(std::io::Error::new(std::io::ErrorKind::FileTooLarge, what));
+    }
+    fs::read(path)
+}
+
+/// The folder of a scene file.
+#[derive(Debug)]
+pub(crate) struct Folder(PathBuf);
+
+impl Folder {
+    /// The folder in which `scene_file` lies.
+    pub(crate) fn of(scene_file: &Path) -> Self {
+        Self(scene_file.parent().unwrap_or(Path::new("")).to_owned())
+    }
+
+    /// Reads the file at a relative path with `/` or `\` between its parts.
+    pub(crate) fn read(&self, relative: &str) -> Result<Vec<u8>, Missing> {
+        let path = self.resolve(relative).map_err(Missing::Refused)?;
+        read_file(&path).map_err(|error| Missing::Io(path, error))
+    }
+
+    /// The path of a relative reference; refuses URLs, absolute paths and paths that leave the folder.
+    fn resolve(&self, relative: &str) -> Result<PathBuf, String> {
+        let unified = relative.replace('\\', "/");
+        if unified.is_empty() || unified.contains('\0') {
+            return Err(format!("{relative:?} is not a file name"));
+        }
+        if let Some((scheme, _)) = unified.split_once(':')
+            && scheme.chars().all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c))
+        {
+            return Err(format!("{relative:?} is a URL or absolute path; only files in the scene's folder are read"));
+        }
+        if unified.starts_with('/') {
+            return Err(format!("{relative:?} is an absolute path; only files in the scene's folder are read"));
+        }
+        let mut depth = 0i64;
+        for part in unified.split('/') {
+            depth += match part {
+                "" | "." => 0,
+                ".." => -1,
+                _ => 1,
+            };
+            if depth < 0 {
+                return Err(format!("{relative:?} leaves the scene's folder; move the file into it"));
+            }
+        }
+        Ok(self.0.join(unified))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_files_below_the_folder_are_reached() {
+        let folder = Folder::of(Path::new("scenes/a.gltf"));
+        for good in ["b.bin", "textures/b.png", "textures\\b.png", "x/../b.png", "./b c.png"] {
+            assert!(folder.resolve(good).is_ok_and(|p| p.starts_with("scenes")), "{good}");
+        }
+        for bad in ["", "../b.bin", "x/../../b", "/etc/passwd", "http://a/b", "file:b", "C:\\b", "\\\\host\\b"] {
+            assert!(folder.resolve(bad).is_err(), "{bad}");
+        }
+    }
+}
