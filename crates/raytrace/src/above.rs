@@ -17,11 +17,7 @@ impl Tracer {
             let size = f64::from(p.abs().max(origin.abs()).max_element());
             (p.as_dvec3() - from).dot(n) > TOLERANCE * size
         };
-        let mut open = if self.tree.nodes.is_empty() {
-            vec![]
-        } else {
-            vec![Child::node(0)]
-        };
+        let mut open = if self.tree.nodes.is_empty() { vec![] } else { vec![Child::node(0)] };
         while let Some(child) = open.pop() {
             if let Some(index) = child.as_block() {
                 let block = &self.tree.blocks[index];
@@ -34,9 +30,7 @@ impl Tracer {
             let node = &self.tree.nodes[child.index()];
             let slots = (0..8).filter(|&slot| node.children[slot] != Child::NONE);
             open.extend(
-                slots
-                    .filter(|&slot| reaches(node.child_bounds(slot), from, n))
-                    .map(|slot| node.children[slot]),
+                slots.filter(|&slot| reaches(node.child_bounds(slot), from, n)).map(|slot| node.children[slot]),
             );
         }
         false

@@ -23,10 +23,7 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    pub(crate) const NOTHING: Seen = Seen {
-        normals: [[0.0; BLOCK]; 9],
-        slack: [[-1.0; BLOCK]; 3],
-    };
+    pub(crate) const NOTHING: Seen = Seen { normals: [[0.0; BLOCK]; 9], slack: [[-1.0; BLOCK]; 3] };
 }
 
 type Point<F> = [F; 3];
@@ -38,11 +35,7 @@ fn sub<F: Lanes>(a: Point<F>, b: Point<F>) -> Point<F> {
 
 #[inline(always)]
 fn cross<F: Lanes>(a: Point<F>, b: Point<F>) -> Point<F> {
-    [
-        a[1].mul(b[2]).sub(a[2].mul(b[1])),
-        a[2].mul(b[0]).sub(a[0].mul(b[2])),
-        a[0].mul(b[1]).sub(a[1].mul(b[0])),
-    ]
+    [a[1].mul(b[2]).sub(a[2].mul(b[1])), a[2].mul(b[0]).sub(a[0].mul(b[2])), a[0].mul(b[1]).sub(a[1].mul(b[0]))]
 }
 
 #[inline(always)]
@@ -62,11 +55,7 @@ fn edge<F: Lanes>(p: Point<F>, q: Point<F>) -> (Point<F>, F) {
     let along = sub(q, p);
     let (p_size, q_size) = (size(p), size(q));
     let near: Point<F> = std::array::from_fn(|i| F::where_less(q_size, p_size, q[i], p[i]));
-    let bound = q_size
-        .min(p_size)
-        .mul(size(along))
-        .mul(F::splat(SLACK))
-        .add(F::splat(UNDERFLOW));
+    let bound = q_size.min(p_size).mul(size(along)).mul(F::splat(SLACK)).add(F::splat(UNDERFLOW));
     (cross(near, along), bound)
 }
 
@@ -74,12 +63,8 @@ fn edge<F: Lanes>(p: Point<F>, q: Point<F>) -> (Point<F>, F) {
 #[inline(always)]
 pub(crate) fn see<F: Lanes>(block: &Block, origin: Vec3) -> Seen {
     let from = [F::splat(origin.x), F::splat(origin.y), F::splat(origin.z)];
-    let corner = |k: usize| -> Point<F> {
-        sub(
-            std::array::from_fn(|axis| F::load(&block.corners[3 * k + axis])),
-            from,
-        )
-    };
+    let corner =
+        |k: usize| -> Point<F> { sub(std::array::from_fn(|axis| F::load(&block.corners[3 * k + axis])), from) };
     let (a, b, c) = (corner(0), corner(1), corner(2));
     let edges = [edge(b, c), edge(c, a), edge(a, b)];
     let whole = dot(a, edges[0].0);
@@ -94,9 +79,7 @@ pub(crate) fn see<F: Lanes>(block: &Block, origin: Vec3) -> Seen {
     let turn = F::load(&turn);
     for (k, (normal, bound)) in edges.into_iter().enumerate() {
         for axis in 0..3 {
-            normal[axis]
-                .mul(turn)
-                .store(&mut seen.normals[3 * k + axis]);
+            normal[axis].mul(turn).store(&mut seen.normals[3 * k + axis]);
         }
         // Where nothing can be hit the bound is -1 and the normal 0: never a candidate.
         F::where_less(turn.abs(), F::splat(0.5), F::splat(-1.0), bound).store(&mut seen.slack[k]);
@@ -114,11 +97,7 @@ fn settle(block: &Block, origin: Vec3, sure: u32, turn: &mut [f32; BLOCK]) {
         } else if sure >> lane & 1 == 0 {
             let [a, b, c] = block.corners(lane).map(|corner| corner - origin);
             let whole = volume(a, b, c);
-            *turn = if whole == 0.0 {
-                0.0
-            } else {
-                whole.signum() as f32
-            };
+            *turn = if whole == 0.0 { 0.0 } else { whole.signum() as f32 };
         }
     }
 }
@@ -126,11 +105,7 @@ fn settle(block: &Block, origin: Vec3, sure: u32, turn: &mut [f32; BLOCK]) {
 /// Which triangles of a block one direction may meet, and which of those beyond doubt; components up to 1.
 #[inline(always)]
 pub(crate) fn candidates<F: Lanes>(seen: &Seen, direction: Vec3) -> (u32, u32) {
-    let d = [
-        F::splat(direction.x),
-        F::splat(direction.y),
-        F::splat(direction.z),
-    ];
+    let d = [F::splat(direction.x), F::splat(direction.y), F::splat(direction.z)];
     let zero = F::splat(0.0);
     let (mut out, mut sure) = (0, u32::MAX);
     for k in 0..3 {

@@ -23,17 +23,10 @@ struct Soup {
 
 impl Soup {
     fn gather(positions: &[Vec3], indices: &[[u32; 3]]) -> Soup {
-        let mut soup = Soup {
-            triangles: Vec::with_capacity(indices.len()),
-            numbers: Vec::with_capacity(indices.len()),
-        };
+        let mut soup =
+            Soup { triangles: Vec::with_capacity(indices.len()), numbers: Vec::with_capacity(indices.len()) };
         for (number, corners) in indices.iter().enumerate() {
-            let corner = |k: usize| {
-                positions
-                    .get(corners[k] as usize)
-                    .copied()
-                    .unwrap_or(Vec3::NAN)
-            };
+            let corner = |k: usize| positions.get(corners[k] as usize).copied().unwrap_or(Vec3::NAN);
             let corners = [corner(0), corner(1), corner(2)];
             if traceable(corners) {
                 let [v0, v1, v2] = corners.map(Vec3A::from);
@@ -53,13 +46,7 @@ pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]], masked: &[bool]) -
     }
     let binary = binary_tree(&soup.triangles);
     let costs = Costs::of(&binary);
-    let mut fold = Fold {
-        binary: &binary,
-        costs,
-        soup: &soup,
-        masked,
-        tree: Tree::default(),
-    };
+    let mut fold = Fold { binary: &binary, costs, soup: &soup, masked, tree: Tree::default() };
     fold.run();
     let mut tree = fold.tree;
     tree.stack_need = stack_need(&tree.nodes);
@@ -91,10 +78,7 @@ struct Costs {
 impl Costs {
     fn of(binary: &Bvh2) -> Costs {
         let n = binary.nodes.len();
-        let mut costs = Costs {
-            cost: vec![0.0; n],
-            count: vec![0; n],
-        };
+        let mut costs = Costs { cost: vec![0.0; n], count: vec![0; n] };
         for index in children_first(binary) {
             let node = &binary.nodes[index];
             let area = node.aabb().half_area();
@@ -179,13 +163,9 @@ impl Fold<'_> {
     fn members(&self, binary: usize) -> Vec<usize> {
         let mut members = vec![binary];
         while members.len() < WIDTH {
-            let open = members
-                .iter()
-                .enumerate()
-                .filter(|&(_, &m)| !self.costs.is_block(self.binary, m));
+            let open = members.iter().enumerate().filter(|&(_, &m)| !self.costs.is_block(self.binary, m));
             let area = |m: usize| self.binary.nodes[m].aabb().half_area();
-            let Some((place, &member)) = open.max_by(|a, b| area(*a.1).total_cmp(&area(*b.1)))
-            else {
+            let Some((place, &member)) = open.max_by(|a, b| area(*a.1).total_cmp(&area(*b.1))) else {
                 break;
             };
             let first = self.binary.nodes[member].first_index as usize;
@@ -204,11 +184,7 @@ impl Fold<'_> {
             let offset = self.binary.nodes[member].aabb().center() - centre;
             for slot in 0..WIDTH {
                 let side = |axis: usize| {
-                    if slot >> axis & 1 == 1 {
-                        offset[axis]
-                    } else {
-                        -offset[axis]
-                    }
+                    if slot >> axis & 1 == 1 { offset[axis] } else { -offset[axis] }
                 };
                 fits.push((side(0) + side(1) + side(2), slot, member));
             }
@@ -231,9 +207,7 @@ impl Fold<'_> {
             let node = &self.binary.nodes[index];
             if node.is_leaf() {
                 let first = node.first_index as usize;
-                members.extend_from_slice(
-                    &self.binary.primitive_indices[first..first + node.prim_count as usize],
-                );
+                members.extend_from_slice(&self.binary.primitive_indices[first..first + node.prim_count as usize]);
             } else {
                 open.extend([node.first_index as usize, node.first_index as usize + 1]);
             }
@@ -246,20 +220,12 @@ impl Fold<'_> {
     }
 
     fn block(&self, members: &[u32]) -> Block {
-        let mut block = Block {
-            corners: [[0.0; BLOCK]; 9],
-            triangles: [u32::MAX; BLOCK],
-            valid: 0,
-            masked: 0,
-        };
+        let mut block = Block { corners: [[0.0; BLOCK]; 9], triangles: [u32::MAX; BLOCK], valid: 0, masked: 0 };
         for lane in 0..BLOCK {
             // Lanes left over repeat the first triangle, so that their arithmetic takes no special path.
             let member = *members.get(lane).unwrap_or(&members[0]) as usize;
             let triangle = &self.soup.triangles[member];
-            for (k, corner) in [triangle.v0, triangle.v1, triangle.v2]
-                .into_iter()
-                .enumerate()
-            {
+            for (k, corner) in [triangle.v0, triangle.v1, triangle.v2].into_iter().enumerate() {
                 for axis in 0..3 {
                     block.corners[3 * k + axis][lane] = corner[axis];
                 }

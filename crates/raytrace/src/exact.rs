@@ -22,20 +22,11 @@ pub(crate) fn volume(a: Vec3, b: Vec3, c: Vec3) -> f64 {
     let (zx, xz) = (bz * cx, bx * cz);
     let (xy, yx) = (bx * cy, by * cx);
     let value = ax * (yz - zy) + ay * (zx - xz) + az * (xy - yx);
-    let size = ax.abs() * (yz.abs() + zy.abs())
-        + ay.abs() * (zx.abs() + xz.abs())
-        + az.abs() * (xy.abs() + yx.abs());
+    let size = ax.abs() * (yz.abs() + zy.abs()) + ay.abs() * (zx.abs() + xz.abs()) + az.abs() * (xy.abs() + yx.abs());
     if value.abs() > ROUNDING * size {
         return value;
     }
-    expansion_sum([
-        (ax, yz),
-        (-ax, zy),
-        (ay, zx),
-        (-ay, xz),
-        (az, xy),
-        (-az, yx),
-    ])
+    expansion_sum([(ax, yz), (-ax, zy), (ay, zx), (-ay, xz), (az, xy), (-az, yx)])
 }
 
 /// Sum of six products of a single and a double of at most 48 bits, with the exact sign.
@@ -90,9 +81,7 @@ mod tests {
     fn sign_agrees_with_integers() {
         let mut state = 7u64;
         let mut next = |range: i64| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             ((state >> 33) as i64).rem_euclid(2 * range + 1) - range
         };
         for _ in 0..20_000 {
@@ -101,16 +90,11 @@ mod tests {
             let b: [i64; 3] = std::array::from_fn(|_| next(1 << 22));
             let c: [i64; 3] = std::array::from_fn(|i| a[i] + b[i] + next(1));
             let cross = |i: usize, j: usize| i128::from(b[i] * c[j] - b[j] * c[i]);
-            let exact = i128::from(a[0]) * cross(1, 2)
-                + i128::from(a[1]) * cross(2, 0)
-                + i128::from(a[2]) * cross(0, 1);
+            let exact =
+                i128::from(a[0]) * cross(1, 2) + i128::from(a[1]) * cross(2, 0) + i128::from(a[2]) * cross(0, 1);
             let single = |v: [i64; 3]| Vec3::from_array(v.map(|x| x as f32));
             let found = volume(single(a), single(b), single(c));
-            assert_eq!(
-                found.partial_cmp(&0.0),
-                exact.partial_cmp(&0),
-                "{a:?} {b:?} {c:?}"
-            );
+            assert_eq!(found.partial_cmp(&0.0), exact.partial_cmp(&0), "{a:?} {b:?} {c:?}");
         }
     }
 
@@ -122,9 +106,6 @@ mod tests {
         let exact = volume(a, b, c);
         let single = a.dot(b.cross(c));
         assert!(exact != 0.0, "a true volume");
-        assert!(
-            (f64::from(single) - exact).abs() > 0.1 * exact.abs(),
-            "single precision loses it: {single} {exact}"
-        );
+        assert!((f64::from(single) - exact).abs() > 0.1 * exact.abs(), "single precision loses it: {single} {exact}");
     }
 }

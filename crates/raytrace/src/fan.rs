@@ -1,17 +1,38 @@
-//! Many rays from one point.
+//! Many rays from one point: packets of those that go the same way.
 
-use crate::ray::{Hit, Ray};
+use crate::lanes::{Lanes, Path, Portable};
+use crate::level::{Job, dispatch};
+use crate::packet::{Packet, Scratch, WIDEST, Walk, alone};
+use crate::queue::{Directions, Group, Queue};
+use crate::ray::{Hit, LARGEST, Line};
 use crate::tracer::Tracer;
+use crate::tree::{Child, Tree};
+use crate::walk::{Apart, Solid, Walker};
 use glam::Vec3;
 
+/// Reciprocals beyond this belong to directions that a packet does not take.
+const STEEPEST: f32 = 1.0e18;
+
+/// Reciprocals below this belong to directions longer than a unit.
+const LEAST: f32 = 0.999;
+
 /// What a thread keeps between fans. It changes how fast answers come, never what they are.
-#[derive(Debug, Default)]
-pub struct FanState {}
+#[derive(Debug)]
+pub struct FanState {
+    scratch: Scratch,
+    queue: Queue,
+}
 
 impl FanState {
     /// An empty state.
     pub fn new() -> FanState {
-        FanState::default()
+        FanState { scratch: Scratch::new(), queue: Queue::new() }
+    }
+}
+
+impl Default for FanState {
+    fn default() -> FanState {
+        FanState::new()
     }
 }
 
@@ -23,10 +44,7 @@ impl Tracer {
     ///
     /// # Panics
     /// If the slices differ in length or `blocked` is too short.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a structure of arrays has its arrays as arguments"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "a structure of arrays has its arrays as arguments")]
     pub fn occluded_fan(
         &self,
         origin: Vec3,
@@ -34,14 +52,18 @@ impl Tracer {
         ys: &[f32],
         zs: &[f32],
         solid: &dyn Fn(u32, f32, f32) -> bool,
-        _state: &mut FanState,
+        state: &mut FanState,
         blocked: &mut [u64],
     ) {
+        assert!(xs.len() == ys.len() && xs.len() == zs.len(), "one x, y and z for each direction");
+        assert!(blocked.len() * 64 >= xs.len(), "one bit for each direction");
         blocked.fill(0);
-        for i in 0..xs.len() {
-            let ray = Ray::new(origin, Vec3::new(xs[i], ys[i], zs[i]));
-            blocked[i / 64] |= u64::from(self.occluded(&ray, solid)) << (i % 64);
+        let sane = origin.is_finite() && origin.abs().max_element() <= 2.0 * LARGEST;
+        if self.tree.nodes.is_empty() || !sane {
+            return;
         }
+        let directions = Directions { origin, each: [xs, ys, zs] };
+        dispatch(self.level, OccludedFan { tree: &self.tree, directions, solid, state, blocked });
     }
 
     /// The nearest hits of the endless rays from one point whose bit in `wanted` is set: `hits[i]` for direction `i`,
@@ -49,10 +71,7 @@ impl Tracer {
     ///
     /// # Panics
     /// If the slices differ in length or `wanted` is too short.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a structure of arrays has its arrays as arguments"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "a structure of arrays has its arrays as arguments")]
     pub fn closest_fan(
         &self,
         origin: Vec3,
@@ -64,14 +83,74 @@ impl Tracer {
         _state: &mut FanState,
         hits: &mut [Option<Hit>],
     ) {
+        let directions = Directions { origin, each: [xs, ys, zs] };
         for (i, hit) in hits.iter_mut().enumerate() {
-            let ray = Ray::new(origin, Vec3::new(xs[i], ys[i], zs[i]));
             let asked = wanted[i / 64] >> (i % 64) & 1 == 1;
-            *hit = if asked {
-                self.closest(&ray, solid)
-            } else {
-                None
-            };
+            *hit = if asked { self.closest(&directions.ray(i), solid) } else { None };
         }
     }
+}
+
+/// [`Tracer::occluded_fan`] at one level.
+struct OccludedFan<'a> {
+    tree: &'a Tree,
+    directions: Directions<'a>,
+    solid: Solid<'a>,
+    state: &'a mut FanState,
+    blocked: &'a mut [u64],
+}
+
+impl Job for OccludedFan<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<P: Path>(self) {
+        let OccludedFan { tree, directions, solid, state, blocked } = self;
+        let FanState { scratch, queue } = state;
+        scratch.sights.start(directions.origin);
+        scratch.occluders.start::<P::Four>(tree, &mut scratch.sights);
+        queue.start();
+        while let Some(group) = queue.next::<P::Rays>(&directions) {
+            let stopped = match packet::<P::Rays>(tree, directions.origin, &group) {
+                Some(packet) => Walk { tree, packet, solid }.blocked::<P>(group.alive, scratch),
+                None => strangers(tree, &directions, &group, solid, scratch),
+            };
+            group.mark(stopped, blocked);
+        }
+    }
+}
+
+/// A packet of a group; None where a ray goes along an axis or is no unit direction.
+#[inline(always)]
+fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, group: &'a Group) -> Option<Packet<'a, R>> {
+    let direction = [0, 1, 2].map(|axis| R::load(&group.directions[axis]));
+    let one = R::splat(1.0);
+    let inverse = direction.map(|d| one.div(d));
+    let usual = inverse.map(|i| R::splat(STEEPEST).above(i.abs()) & i.abs().above(R::splat(LEAST)));
+    if usual != [(1u32 << R::N) - 1; 3] {
+        return None;
+    }
+    let range = inverse.map(|i| (i.lowest(), i.highest()));
+    let bit = |axis: usize| usize::from(range[axis].0 < 0.0) << axis;
+    let octant = bit(0) | bit(1) | bit(2);
+    let mut inverse_each = [[0.0; WIDEST]; 3];
+    for axis in 0..3 {
+        inverse[axis].store(&mut inverse_each[axis]);
+    }
+    let apart = Apart::new(tree, origin, octant);
+    Some(Packet { direction, inverse, each: &group.directions, inverse_each, octant, apart, range })
+}
+
+/// Rays that no packet takes: one by one.
+#[cold]
+#[inline(never)]
+fn strangers(tree: &Tree, directions: &Directions<'_>, group: &Group, solid: Solid<'_>, scratch: &mut Scratch) -> u32 {
+    let mut stopped = 0;
+    for i in (0..WIDEST).filter(|i| group.alive >> i & 1 == 1) {
+        if let Some(line) = Line::new(&directions.ray(group.numbers[i] as usize)) {
+            let walker = Walker::new(tree, line);
+            stopped |= u32::from(alone::<Portable>(tree, &walker, Child::node(0), solid, scratch)) << i;
+        }
+    }
+    stopped
 }

@@ -4,6 +4,7 @@
 ///
 /// Each operation rounds as IEEE 754 says and none fuses two, so that all implementations give the same bits.
 pub(crate) trait Lanes: Copy {
+    const N: usize;
     fn splat(value: f32) -> Self;
     /// The first `N` numbers of a slice.
     fn load(from: &[f32]) -> Self;
@@ -12,11 +13,16 @@ pub(crate) trait Lanes: Copy {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
+    fn div(self, other: Self) -> Self;
     /// The smaller; `other` where either is not a number.
     fn min(self, other: Self) -> Self;
     /// The larger; `other` where either is not a number.
     fn max(self, other: Self) -> Self;
     fn abs(self) -> Self;
+    /// The smallest of the row, which holds numbers only.
+    fn lowest(self) -> f32;
+    /// The largest of the row, which holds numbers only.
+    fn highest(self) -> f32;
     /// One bit per lane: self > other; clear where either is not a number.
     fn above(self, other: Self) -> u32;
     /// `yes` where a < b, else `no`.
@@ -43,6 +49,8 @@ impl<const N: usize> Row<N> {
 }
 
 impl<const N: usize> Lanes for Row<N> {
+    const N: usize = N;
+
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Row([value; N])
@@ -74,6 +82,11 @@ impl<const N: usize> Lanes for Row<N> {
     }
 
     #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         self.zip(other, |a, b| if a < b { a } else { b })
     }
@@ -89,15 +102,23 @@ impl<const N: usize> Lanes for Row<N> {
     }
 
     #[inline(always)]
+    fn lowest(self) -> f32 {
+        self.0.into_iter().fold(f32::INFINITY, f32::min)
+    }
+
+    #[inline(always)]
+    fn highest(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    #[inline(always)]
     fn above(self, other: Self) -> u32 {
         (0..N).fold(0, |mask, i| mask | u32::from(self.0[i] > other.0[i]) << i)
     }
 
     #[inline(always)]
     fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self {
-        Row(std::array::from_fn(|i| {
-            if a.0[i] < b.0[i] { yes.0[i] } else { no.0[i] }
-        }))
+        Row(std::array::from_fn(|i| if a.0[i] < b.0[i] { yes.0[i] } else { no.0[i] }))
     }
 }
 

@@ -18,13 +18,20 @@ mod build;
 mod exact;
 mod fan;
 mod lanes;
+mod level;
 mod offset;
+mod packet;
+mod queue;
 mod ray;
+mod sight;
 mod tracer;
 mod tree;
 mod walk;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 pub use fan::FanState;
+pub use level::Level;
 pub use offset::{offset_origin, offset_origin_on};
 pub use ray::{Hit, Ray};
 pub use tracer::Tracer;

@@ -19,12 +19,7 @@ pub struct Ray {
 impl Ray {
     /// The endless ray from a point.
     pub fn new(origin: Vec3, direction: Vec3) -> Ray {
-        Ray {
-            origin,
-            direction,
-            t_min: 0.0,
-            t_max: f32::INFINITY,
-        }
+        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY }
     }
 }
 
@@ -43,8 +38,8 @@ pub struct Hit {
     pub front: bool,
 }
 
-/// Coordinates beyond this (2^40) are not traced, so that no product of three overflows single precision.
-pub(crate) const LARGEST: f32 = 1_099_511_627_776.0;
+/// Coordinates beyond this (2^38) are not traced, so that no product of three overflows single precision.
+pub(crate) const LARGEST: f32 = 274_877_906_944.0;
 
 /// Components of a direction below this part of the largest (2^-60) are taken as zero, so that reciprocals stay finite.
 const SMALLEST: f32 = 8.673_617_4e-19;
@@ -74,21 +69,11 @@ impl Line {
         if !sane || !range {
             return None;
         }
-        let (direction, scale) = if (0.5..=1.0).contains(&largest) {
-            (ray.direction, 1.0)
-        } else {
-            rescaled(ray.direction, largest)?
-        };
+        let (direction, scale) =
+            if (0.5..=1.0).contains(&largest) { (ray.direction, 1.0) } else { rescaled(ray.direction, largest)? };
         let flush = |x: f32| if x.abs() < SMALLEST { 0.0 } else { x };
         let direction = direction.map(flush);
-        Some(Line {
-            origin: ray.origin,
-            direction,
-            inverse: direction.recip(),
-            scale,
-            t_min,
-            t_max: ray.t_max,
-        })
+        Some(Line { origin: ray.origin, direction, inverse: direction.recip(), scale, t_min, t_max: ray.t_max })
     }
 
     /// One bit per axis: set where the direction is negative.
@@ -134,15 +119,8 @@ pub(crate) fn meet(line: &Line, corners: [Vec3; 3]) -> Option<Hit> {
     let point = wa * a.as_dvec3() + wb * b.as_dvec3() + wc * c.as_dvec3();
     let t = along(point, d.as_dvec3()) * f64::from(line.scale);
     let t = (t as f32).max(0.0);
-    let in_range =
-        (line.t_min == 0.0 || t > line.t_min) && (line.t_max == f32::INFINITY || t < line.t_max);
-    in_range.then_some(Hit {
-        triangle: 0,
-        t,
-        u: wb as f32,
-        v: wc as f32,
-        front: sum < 0.0,
-    })
+    let in_range = (line.t_min == 0.0 || t > line.t_min) && (line.t_max == f32::INFINITY || t < line.t_max);
+    in_range.then_some(Hit { triangle: 0, t, u: wb as f32, v: wc as f32, front: sum < 0.0 })
 }
 
 /// Parameter of the point of a line through the origin that is nearest to a point.

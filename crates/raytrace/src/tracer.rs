@@ -2,7 +2,8 @@
 
 use crate::block::see;
 use crate::build::build;
-use crate::lanes::{Path, Portable};
+use crate::lanes::Path;
+use crate::level::{Job, Level, dispatch};
 use crate::ray::{Hit, Line, Ray};
 use crate::tree::{Child, Tree};
 use crate::walk::{Solid, Walker, blocked, nearest};
@@ -21,17 +22,27 @@ thread_local! {
 #[derive(Debug, Default)]
 pub struct Tracer {
     pub(crate) tree: Tree,
+    pub(crate) level: Level,
 }
 
 impl Tracer {
     /// Builds a tracer; `masked` says which triangles ask the filter, and is empty where none does.
     ///
-    /// Triangles with a corner that is missing, not finite or beyond 2^40 units are left out, as are those
+    /// Triangles with a corner that is missing, not finite or beyond 2^38 units are left out, as are those
     /// with two corners in one place.
     pub fn build(positions: &[Vec3], triangles: &[[u32; 3]], masked: &[bool]) -> Tracer {
-        Tracer {
-            tree: build(positions, triangles, masked),
-        }
+        Tracer { tree: build(positions, triangles, masked), level: Level::best() }
+    }
+
+    /// The same tracer at another level; None where this processor lacks it.
+    pub fn at_level(mut self, level: Level) -> Option<Tracer> {
+        self.level = level;
+        Level::available().contains(&level).then_some(self)
+    }
+
+    /// The level in use.
+    pub fn level(&self) -> Level {
+        self.level
     }
 
     /// Bytes that the tree takes.
@@ -43,7 +54,7 @@ impl Tracer {
     /// whether a masked triangle is there at a point, and is asked about no others.
     pub fn closest(&self, ray: &Ray, solid: &dyn Fn(u32, f32, f32) -> bool) -> Option<Hit> {
         let line = self.line(ray)?;
-        with_stack(|stack| closest_on::<Portable>(&self.tree, line, stack, solid))
+        with_stack(|stack| dispatch(self.level, Closest { tree: &self.tree, line, stack, solid }))
     }
 
     /// Whether anything lies on the ray; `solid` as for [`Tracer::closest`].
@@ -51,15 +62,11 @@ impl Tracer {
         let Some(line) = self.line(ray) else {
             return false;
         };
-        with_stack(|stack| occluded_on::<Portable>(&self.tree, line, stack, solid))
+        with_stack(|stack| dispatch(self.level, Occluded { tree: &self.tree, line, stack, solid }))
     }
 
     fn line(&self, ray: &Ray) -> Option<Line> {
-        if self.tree.nodes.is_empty() {
-            None
-        } else {
-            Line::new(ray)
-        }
+        if self.tree.nodes.is_empty() { None } else { Line::new(ray) }
     }
 }
 
@@ -70,26 +77,38 @@ fn with_stack<R>(work: impl FnOnce(&mut Vec<u32>) -> R) -> R {
     result
 }
 
-#[inline(always)]
-fn closest_on<P: Path>(
-    tree: &Tree,
+/// [`Tracer::closest`] at one level.
+struct Closest<'a> {
+    tree: &'a Tree,
     line: Line,
-    stack: &mut Vec<u32>,
-    solid: Solid<'_>,
-) -> Option<Hit> {
-    nearest::<P>(tree, &Walker::new(tree, line), stack, solid)
+    stack: &'a mut Vec<u32>,
+    solid: Solid<'a>,
 }
 
-#[inline(always)]
-fn occluded_on<P: Path>(tree: &Tree, line: Line, stack: &mut Vec<u32>, solid: Solid<'_>) -> bool {
-    let view = |index: usize| see::<P::Four>(&tree.blocks[index], line.origin);
-    blocked::<P>(
-        tree,
-        &Walker::new(tree, line),
-        Child::node(0),
-        stack,
-        solid,
-        view,
-    )
-    .is_some()
+impl Job for Closest<'_> {
+    type Output = Option<Hit>;
+
+    #[inline(always)]
+    fn run<P: Path>(self) -> Option<Hit> {
+        nearest::<P>(self.tree, &Walker::new(self.tree, self.line), self.stack, self.solid)
+    }
+}
+
+/// [`Tracer::occluded`] at one level.
+struct Occluded<'a> {
+    tree: &'a Tree,
+    line: Line,
+    stack: &'a mut Vec<u32>,
+    solid: Solid<'a>,
+}
+
+impl Job for Occluded<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<P: Path>(self) -> bool {
+        let view = |index: usize| see::<P::Four>(&self.tree.blocks[index], self.line.origin);
+        let walker = Walker::new(self.tree, self.line);
+        blocked::<P>(self.tree, &walker, Child::node(0), self.stack, self.solid, view).is_some()
+    }
 }

@@ -72,10 +72,7 @@ impl Node {
     /// Lower and upper corner of a child's box.
     pub(crate) fn child_bounds(&self, slot: usize) -> (Vec3, Vec3) {
         let at = |axis: usize| self.bounds[axis][slot];
-        (
-            Vec3::new(at(0), at(1), at(2)),
-            Vec3::new(at(3), at(4), at(5)),
-        )
+        (Vec3::new(at(0), at(1), at(2)), Vec3::new(at(3), at(4), at(5)))
     }
 }
 
@@ -96,11 +93,7 @@ impl Block {
     #[inline]
     pub(crate) fn corners(&self, lane: usize) -> [Vec3; 3] {
         let corner = |k: usize| {
-            Vec3::new(
-                self.corners[3 * k][lane],
-                self.corners[3 * k + 1][lane],
-                self.corners[3 * k + 2][lane],
-            )
+            Vec3::new(self.corners[3 * k][lane], self.corners[3 * k + 1][lane], self.corners[3 * k + 2][lane])
         };
         [corner(0), corner(1), corner(2)]
     }

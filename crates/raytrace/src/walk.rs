@@ -51,17 +51,10 @@ impl Apart {
     pub(crate) fn new(tree: &Tree, origin: Vec3, octant: usize) -> Apart {
         let widen = WIDEN * (tree.reach + origin.abs().max_element());
         let toward = |axis: usize| {
-            if octant >> axis & 1 == 1 {
-                -widen
-            } else {
-                widen
-            }
+            if octant >> axis & 1 == 1 { -widen } else { widen }
         };
         let step = Vec3::new(toward(0), toward(1), toward(2));
-        Apart {
-            near: origin + step,
-            far: origin - step,
-        }
+        Apart { near: origin + step, far: origin - step }
     }
 }
 
@@ -79,8 +72,7 @@ pub(crate) struct Walker {
     pub(crate) line: Line,
     pub(crate) octant: usize,
     pub(crate) apart: Apart,
-    /// Range of the parameter along the scaled direction.
-    pub(crate) start: f32,
+    /// Last parameter of interest along the scaled direction.
     pub(crate) end: f32,
 }
 
@@ -89,30 +81,20 @@ impl Walker {
     pub(crate) fn new(tree: &Tree, line: Line) -> Walker {
         let octant = line.octant();
         let apart = Apart::new(tree, line.origin, octant);
-        // Dividing by a power of two is exact; the start is left at zero, the exact test minds t_min.
-        Walker {
-            line,
-            octant,
-            apart,
-            start: 0.0,
-            end: line.t_max / line.scale,
-        }
+        // Dividing by a power of two is exact; boxes start at zero, the exact test minds t_min.
+        Walker { line, octant, apart, end: line.t_max / line.scale }
     }
 
     /// Which children's boxes the ray meets before `end`.
     #[inline(always)]
     pub(crate) fn boxes<E: Lanes>(&self, node: &Node, end: f32) -> u32 {
         let (entry, exit) = planes(self.octant);
-        let mut near = E::splat(self.start);
+        let mut near = E::splat(0.0);
         let mut far = E::splat(end);
         for axis in 0..3 {
             let inverse = E::splat(self.line.inverse[axis]);
-            let enter = E::load(&node.bounds[entry[axis]])
-                .sub(E::splat(self.apart.near[axis]))
-                .mul(inverse);
-            let leave = E::load(&node.bounds[exit[axis]])
-                .sub(E::splat(self.apart.far[axis]))
-                .mul(inverse);
+            let enter = E::load(&node.bounds[entry[axis]]).sub(E::splat(self.apart.near[axis])).mul(inverse);
+            let leave = E::load(&node.bounds[exit[axis]]).sub(E::splat(self.apart.far[axis])).mul(inverse);
             // Not-a-number (a plane through the origin, a direction within it) leaves the range as it is.
             near = enter.max(near);
             far = leave.min(far);
@@ -166,18 +148,9 @@ fn push(stack: &mut Vec<u32>, node: &Node, mask: u32, octant: usize) {
 
 /// The lane of a triangle of a block that blocks a ray.
 #[inline(always)]
-pub(crate) fn blocked_by<P: Path>(
-    block: &Block,
-    seen: &Seen,
-    line: &Line,
-    solid: Solid<'_>,
-) -> Option<usize> {
+pub(crate) fn blocked_by<P: Path>(block: &Block, seen: &Seen, line: &Line, solid: Solid<'_>) -> Option<usize> {
     let (mut open, sure) = candidates::<P::Four>(seen, line.direction);
-    let sure = if line.endless() {
-        sure & !block.masked
-    } else {
-        0
-    };
+    let sure = if line.endless() { sure & !block.masked } else { 0 };
     if sure != 0 {
         return Some(sure.trailing_zeros() as usize);
     }
@@ -203,12 +176,7 @@ pub(crate) fn blocked_for_sure(block: &Block, lane: usize, line: &Line, solid: S
 
 /// The nearest hit of a ray; of equally near ones that of the smallest triangle number.
 #[inline(always)]
-pub(crate) fn nearest<P: Path>(
-    tree: &Tree,
-    walker: &Walker,
-    stack: &mut Vec<u32>,
-    solid: Solid<'_>,
-) -> Option<Hit> {
+pub(crate) fn nearest<P: Path>(tree: &Tree, walker: &Walker, stack: &mut Vec<u32>, solid: Solid<'_>) -> Option<Hit> {
     let base = stack.len();
     let mut best: Option<Hit> = None;
     let mut child = Child::node(0);
@@ -240,13 +208,7 @@ pub(crate) fn nearest<P: Path>(
 
 /// The hit of one triangle if it beats the best so far.
 #[inline(never)]
-fn nearer(
-    block: &Block,
-    lane: usize,
-    line: &Line,
-    best: Option<&Hit>,
-    solid: Solid<'_>,
-) -> Option<Hit> {
+fn nearer(block: &Block, lane: usize, line: &Line, best: Option<&Hit>, solid: Solid<'_>) -> Option<Hit> {
     let mut hit = meet(line, block.corners(lane))?;
     hit.triangle = block.triangles[lane];
     let beats = best.is_none_or(|best| (hit.t, hit.triangle) < (best.t, best.triangle));

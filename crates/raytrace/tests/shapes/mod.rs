@@ -50,9 +50,7 @@ pub fn soup(n: usize, size: f32, seed: u64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let centre = random.point();
         positions.extend((0..3).map(|_| centre + random.point() * size));
     }
-    let triangles = (0..n as u32)
-        .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-        .collect();
+    let triangles = (0..n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     (positions, triangles)
 }
 
@@ -81,4 +79,18 @@ fn textbook(origin: DVec3, d: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
     let v = s.cross(e1).dot(d) / det;
     let t = s.cross(e1).dot(e2) / det;
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
+}
+
+/// Cosine-distributed directions around a normal, neighbours in the list near each other on the sphere.
+pub fn hemisphere(normal: Vec3, n: usize) -> Vec<Vec3> {
+    let (x, y) = normal.any_orthonormal_pair();
+    let side = (n as f32).sqrt().ceil() as usize;
+    let cell = |i: usize| {
+        let (row, column) = (i / side, i % side);
+        let column = if row % 2 == 0 { column } else { side - 1 - column };
+        let radius = ((row as f32 + 0.5) / side as f32).sqrt();
+        let (sin, cos) = ((column as f32 + 0.5) / side as f32 * std::f32::consts::TAU).sin_cos();
+        (x * cos + y * sin) * radius + normal * (1.0 - radius * radius).sqrt()
+    };
+    (0..n).map(|i| cell(i).normalize()).collect()
 }

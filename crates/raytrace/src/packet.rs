@@ -1,0 +1,244 @@
+//! A packet of rays from one point into one octant through the tree; the last few alive go on alone.
+
+use crate::block::dot;
+use crate::lanes::{Lanes, Path};
+use crate::ray::Line;
+use crate::sight::{Occluders, Plane3, Sights};
+use crate::tree::{Child, Node, Tree, WIDTH};
+use crate::walk::{Apart, LATER, PERMUTED, Solid, Walker, blocked, blocked_for_sure, planes};
+use glam::Vec3;
+
+/// Packets with at most this many rays left are walked ray by ray.
+const ALONE: u32 = 2;
+
+/// Most rays in a packet, at any level.
+pub(crate) const WIDEST: usize = 16;
+
+/// One number for each ray of a packet.
+pub(crate) type Many = [f32; WIDEST];
+
+/// The working memory of a fan.
+#[derive(Debug)]
+pub(crate) struct Scratch {
+    pub(crate) sights: Sights,
+    pub(crate) occluders: Occluders,
+    /// Rays (high half) and child (low half) still to visit.
+    waiting: Vec<u64>,
+    stack: Vec<u32>,
+}
+
+impl Scratch {
+    pub(crate) fn new() -> Scratch {
+        Scratch { sights: Sights::new(), occluders: Occluders::default(), waiting: Vec::new(), stack: Vec::new() }
+    }
+}
+
+/// Rays side by side, all from one origin into one octant, with finite reciprocals.
+pub(crate) struct Packet<'a, R> {
+    pub(crate) direction: [R; 3],
+    pub(crate) inverse: [R; 3],
+    /// The same directions and reciprocals, one by one.
+    pub(crate) each: &'a [Many; 3],
+    pub(crate) inverse_each: [Many; 3],
+    pub(crate) octant: usize,
+    pub(crate) apart: Apart,
+    /// Least and greatest reciprocal of each axis.
+    pub(crate) range: [(f32, f32); 3],
+}
+
+/// Everything a packet's walk refers to.
+pub(crate) struct Walk<'a, R> {
+    pub(crate) tree: &'a Tree,
+    pub(crate) packet: Packet<'a, R>,
+    pub(crate) solid: Solid<'a>,
+}
+
+impl<R: Lanes> Walk<'_, R> {
+    /// Which of the rays in `alive` are blocked.
+    #[inline(always)]
+    pub(crate) fn blocked<P: Path<Rays = R>>(&self, alive: u32, scratch: &mut Scratch) -> u32 {
+        let mut open = self.try_occluders(alive, &mut scratch.occluders);
+        scratch.waiting.clear();
+        let mut child = Child::node(0);
+        let mut mask = open;
+        while open != 0 {
+            mask &= open;
+            if mask.count_ones() <= ALONE {
+                open &= !self.one_by_one::<P>(child, mask, scratch);
+            } else if let Some(index) = child.as_block() {
+                open &= !self.try_block::<P>(index, mask, scratch);
+            } else {
+                self.descend::<P>(&self.tree.nodes[child.index()], mask, &mut scratch.waiting);
+            }
+            let Some(next) = scratch.waiting.pop() else {
+                break;
+            };
+            child = Child::from_bits(next as u32);
+            mask = (next >> 32) as u32;
+        }
+        alive & !open
+    }
+
+    /// Tries the latest occluders; returns the rays they leave.
+    #[inline(always)]
+    fn try_occluders(&self, alive: u32, occluders: &mut Occluders) -> u32 {
+        let mut open = alive;
+        let mut index = 0;
+        while open != 0 && index < occluders.planes().len() {
+            let (_, sure) = self.meets(&occluders.planes()[index]);
+            if sure & open != 0 {
+                open &= !sure;
+                occluders.promote(index);
+            }
+            index += 1;
+        }
+        open
+    }
+
+    /// Which rays may meet a triangle, and which of those beyond doubt.
+    #[inline(always)]
+    fn meets(&self, triangle: &Plane3) -> (u32, u32) {
+        let zero = R::splat(0.0);
+        let edge = |k: usize| {
+            let normal = std::array::from_fn(|axis| R::splat(triangle.normals[3 * k + axis]));
+            (dot(self.packet.direction, normal), R::splat(triangle.slack[k]))
+        };
+        let [(a, a_slack), (b, b_slack), (c, c_slack)] = [edge(0), edge(1), edge(2)];
+        let most = a.add(a_slack).min(b.add(b_slack)).min(c.add(c_slack));
+        let out = zero.above(most);
+        let least = a.sub(a_slack).min(b.sub(b_slack)).min(c.sub(c_slack));
+        let all = (1u32 << R::N) - 1;
+        (!out & all, least.above(zero) & !out)
+    }
+
+    /// Which rays of a mask the triangles of a block stop.
+    #[inline(always)]
+    fn try_block<P: Path>(&self, index: usize, mask: u32, scratch: &mut Scratch) -> u32 {
+        let block = &self.tree.blocks[index];
+        let seen = *scratch.sights.view::<P::Four>(self.tree, index);
+        let mut stopped = 0;
+        let mut lanes = block.valid;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            let (maybe, sure) = self.meets(&Plane3::of(&seen, lane));
+            let open = maybe & mask & !stopped;
+            if open == 0 {
+                continue;
+            }
+            let masked = block.masked >> lane & 1 == 1;
+            let mut now = if masked { 0 } else { sure & open };
+            let mut doubt = open & !now;
+            while doubt != 0 {
+                let ray = doubt.trailing_zeros() as usize;
+                doubt &= doubt - 1;
+                let line = self.line(ray, scratch.sights.origin);
+                let stop = blocked_for_sure(block, lane, &line, self.solid);
+                now |= u32::from(stop) << ray;
+            }
+            if now != 0 && !masked {
+                scratch.occluders.keep(index, lane, &seen);
+            }
+            stopped |= now;
+            if stopped == mask {
+                break;
+            }
+        }
+        stopped
+    }
+
+    /// Puts the children that any ray of a mask meets on the stack, the farthest first.
+    #[inline(always)]
+    fn descend<P: Path>(&self, node: &Node, mask: u32, waiting: &mut Vec<u64>) {
+        let packet = &self.packet;
+        let (entry, exit) = planes(packet.octant);
+        let mut enters = [[0.0f32; WIDTH]; 3];
+        let mut leaves = [[0.0f32; WIDTH]; 3];
+        type Boxes<P> = <P as Path>::Eight;
+        let mut near = Boxes::<P>::splat(0.0);
+        let mut far = Boxes::<P>::splat(f32::INFINITY);
+        for axis in 0..3 {
+            let enter = Boxes::<P>::load(&node.bounds[entry[axis]]).sub(Boxes::<P>::splat(packet.apart.near[axis]));
+            let leave = Boxes::<P>::load(&node.bounds[exit[axis]]).sub(Boxes::<P>::splat(packet.apart.far[axis]));
+            let least = Boxes::<P>::splat(packet.range[axis].0);
+            let greatest = Boxes::<P>::splat(packet.range[axis].1);
+            near = enter.mul(least).min(enter.mul(greatest)).max(near);
+            far = leave.mul(least).max(leave.mul(greatest)).min(far);
+            enter.store(&mut enters[axis]);
+            leave.store(&mut leaves[axis]);
+        }
+        let some = !near.above(far.mul(Boxes::<P>::splat(LATER))) & ((1 << WIDTH) - 1);
+        let mut order = PERMUTED[packet.octant][some as usize];
+        while order != 0 {
+            let last = 7 - order.leading_zeros() as usize;
+            order &= !(1 << last);
+            let slot = last ^ packet.octant;
+            let rays = self.meets_box(&enters, &leaves, slot) & mask;
+            if rays != 0 {
+                waiting.push(u64::from(rays) << 32 | u64::from(node.children[slot].bits()));
+            }
+        }
+    }
+
+    /// Which rays meet one box, given by its planes from the origin.
+    #[inline(always)]
+    fn meets_box(&self, enters: &[[f32; WIDTH]; 3], leaves: &[[f32; WIDTH]; 3], slot: usize) -> u32 {
+        let mut near = R::splat(0.0);
+        let mut far = R::splat(f32::INFINITY);
+        for axis in 0..3 {
+            near = R::splat(enters[axis][slot]).mul(self.packet.inverse[axis]).max(near);
+            far = R::splat(leaves[axis][slot]).mul(self.packet.inverse[axis]).min(far);
+        }
+        !near.above(far.mul(R::splat(LATER)))
+    }
+
+    /// Walks the rays of a mask one by one from a child on down.
+    #[inline(always)]
+    fn one_by_one<P: Path>(&self, from: Child, mask: u32, scratch: &mut Scratch) -> u32 {
+        let mut stopped = 0;
+        let mut rays = mask;
+        while rays != 0 {
+            let ray = rays.trailing_zeros() as usize;
+            rays &= rays - 1;
+            let line = self.line(ray, scratch.sights.origin);
+            let walker = Walker { line, octant: self.packet.octant, apart: self.packet.apart, end: f32::INFINITY };
+            stopped |= u32::from(alone::<P>(self.tree, &walker, from, self.solid, scratch)) << ray;
+        }
+        stopped
+    }
+
+    /// One of the rays: a packet's directions are unit and not too steep, so they need no scaling.
+    #[inline(always)]
+    fn line(&self, ray: usize, origin: Vec3) -> Line {
+        let one = |each: &[Many; 3]| Vec3::new(each[0][ray], each[1][ray], each[2][ray]);
+        Line {
+            origin,
+            direction: one(self.packet.each),
+            inverse: one(&self.packet.inverse_each),
+            scale: 1.0,
+            t_min: 0.0,
+            t_max: f32::INFINITY,
+        }
+    }
+}
+
+/// Whether one ray of a fan is blocked, from a child on down; remembers by what.
+#[inline(always)]
+pub(crate) fn alone<P: Path>(
+    tree: &Tree,
+    walker: &Walker,
+    from: Child,
+    solid: Solid<'_>,
+    scratch: &mut Scratch,
+) -> bool {
+    let Scratch { sights, occluders, stack, .. } = scratch;
+    let view = |index: usize| *sights.view::<P::Four>(tree, index);
+    let Some((index, lane)) = blocked::<P>(tree, walker, from, stack, solid, view) else {
+        return false;
+    };
+    if tree.blocks[index].masked >> lane & 1 == 0 {
+        let seen = *sights.view::<P::Four>(tree, index);
+        occluders.keep(index, lane, &seen);
+    }
+    true
+}
