@@ -1,5 +1,6 @@
 //! All basis functions at one direction.
 
+use crate::value::Value;
 use crate::{Bands, recurrence, straight};
 use glam::{DVec3, Vec3};
 
@@ -13,10 +14,7 @@ use glam::{DVec3, Vec3};
 #[inline]
 pub fn evaluate(bands: Bands, direction: Vec3, out: &mut [f32]) {
     let out = &mut out[..bands.coefficients()];
-    let direction = direction.to_array();
-    if !straight::evaluate_into(bands.count(), direction, |i, value| out[i] = value) {
-        recurrence::evaluate(bands.count(), direction, out);
-    }
+    visit(bands, direction.to_array(), |i, value| out[i] = value);
 }
 
 /// [`evaluate`] in f64.
@@ -26,8 +24,13 @@ pub fn evaluate(bands: Bands, direction: Vec3, out: &mut [f32]) {
 #[inline]
 pub fn evaluate_f64(bands: Bands, direction: DVec3, out: &mut [f64]) {
     let out = &mut out[..bands.coefficients()];
-    let direction = direction.to_array();
-    if !straight::evaluate_into(bands.count(), direction, |i, value| out[i] = value) {
-        recurrence::evaluate(bands.count(), direction, out);
+    visit(bands, direction.to_array(), |i, value| out[i] = value);
+}
+
+/// Hands every function at `direction` to `put` with its index, in no particular order of the indices.
+#[inline(always)]
+pub(crate) fn visit<V: Value>(bands: Bands, direction: [V; 3], mut put: impl FnMut(usize, V)) {
+    if !straight::evaluate_into(bands.count(), direction, &mut put) {
+        recurrence::evaluate_into(bands.count(), direction, put);
     }
 }

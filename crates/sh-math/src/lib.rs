@@ -16,6 +16,7 @@ mod batch;
 mod double_double;
 mod euler;
 mod evaluate;
+mod legendre;
 mod light;
 mod project;
 mod quarter_turn;

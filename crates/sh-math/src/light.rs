@@ -1,7 +1,8 @@
 //! The coefficients of a coloured light.
 
+use crate::Bands;
+use crate::evaluate::visit;
 use crate::rotate::Rotation;
-use crate::{Bands, evaluate};
 use glam::{Quat, Vec3};
 
 /// Light coefficients: of radiance, linear RGB, world axes unless rotated.
@@ -23,14 +24,12 @@ impl Rgb {
     /// The radiance that the coefficients describe along the unit vector `direction`; it may ring below zero.
     #[must_use]
     pub fn reconstruct(&self, direction: Vec3) -> [f32; 3] {
-        let mut basis = vec![0.0; self.bands.coefficients()];
-        evaluate(self.bands, direction, &mut basis);
         let mut sum = [0.0; 3];
-        for (value, y) in self.values.iter().zip(&basis) {
-            for channel in 0..3 {
-                sum[channel] += value[channel] * y;
+        visit(self.bands, direction.to_array(), |i, y| {
+            for (channel, value) in sum.iter_mut().zip(self.values[i]) {
+                *channel += value * y;
             }
-        }
+        });
         sum
     }
 

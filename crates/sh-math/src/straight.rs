@@ -7,11 +7,7 @@ use crate::value::Value;
 
 /// Hands the functions of `n_bands` bands at a unit vector to `put`; false when no code exists for that many.
 #[inline(always)]
-pub(crate) fn evaluate_into<V: Value>(
-    n_bands: usize,
-    direction: [V; 3],
-    put: impl FnMut(usize, V),
-) -> bool {
+pub(crate) fn evaluate_into<V: Value>(n_bands: usize, direction: [V; 3], put: impl FnMut(usize, V)) -> bool {
     match n_bands {
         1 => bands_1(direction, put),
         2 => bands_2(direction, put),

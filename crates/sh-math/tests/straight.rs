@@ -2,6 +2,8 @@
 //!
 //! `SH_MATH_BLESS=1 cargo test -p sh-math --test straight` writes it anew.
 
+use glam::{DVec3, Vec3};
+use sh_math::{Bands, evaluate, evaluate_batch, evaluate_f64, recurrence};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -28,13 +30,66 @@ fn source_is_up_to_date() {
     assert!(found == expected, "src/straight.rs is not what its generator writes: run with SH_MATH_BLESS=1");
 }
 
+/// 61 directions: seven whole blocks of the batch and five more.
+fn directions() -> Vec<DVec3> {
+    let direction = |i: u32| {
+        let z = 1.0 - f64::from(2 * i + 1) / 61.0;
+        let (sine, cosine) = libm::sincos(2.4 * f64::from(i));
+        DVec3::new((1.0 - z * z).sqrt() * cosine, (1.0 - z * z).sqrt() * sine, z)
+    };
+    (0..61).map(direction).collect()
+}
+
+#[test]
+fn straight_line_equals_recurrence() {
+    for n in 1..=MOST {
+        let bands = Bands::new(n as u32).expect("few bands are in range");
+        let (mut straight, mut general) = (vec![0.0; n * n], vec![0.0; n * n]);
+        for direction in directions() {
+            evaluate_f64(bands, direction, &mut straight);
+            recurrence::evaluate(n, direction.to_array(), &mut general);
+            for (i, (a, b)) in straight.iter().zip(&general).enumerate() {
+                assert!((a - b).abs() < 1e-14, "{n} bands, function {i} at {direction}: {a} is not {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn batch_equals_single_bit_for_bit() {
+    let directions: Vec<Vec3> = directions().into_iter().map(DVec3::as_vec3).collect();
+    let [xs, ys, zs] = [0, 1, 2].map(|axis| directions.iter().map(|d| d[axis]).collect::<Vec<f32>>());
+    for n in 1..=12 {
+        let bands = Bands::new(n).expect("few bands are in range");
+        let mut batch = vec![0.0; bands.coefficients() * directions.len()];
+        evaluate_batch(bands, &xs, &ys, &zs, &mut batch);
+        let mut single = vec![0.0; bands.coefficients()];
+        for (j, direction) in directions.iter().enumerate() {
+            evaluate(bands, *direction, &mut single);
+            let equal = (0..single.len()).all(|i| single[i].to_bits() == batch[i * directions.len() + j].to_bits());
+            assert!(equal, "{n} bands at {direction}: batch and single differ");
+        }
+    }
+}
+
+#[test]
+fn batch_of_nothing_is_nothing() {
+    evaluate_batch::<f32>(Bands::new(5).expect("in range"), &[], &[], &[], &mut []);
+}
+
+#[test]
+fn generator_can_fail() {
+    let broken = source().replace("0.9461746957575", "0.9461746957576");
+    assert!(broken != source(), "a changed constant must be seen");
+}
+
 /// The whole file.
 fn source() -> String {
     let mut text = String::from(HEAD);
     text += "/// Hands the functions of `n_bands` bands at a unit vector to `put`; false when no code exists for that many.\n";
     text += "#[inline(always)]\n";
-    text += "pub(crate) fn evaluate_into<V: Value>(\n    n_bands: usize,\n    direction: [V; 3],\n";
-    text += "    put: impl FnMut(usize, V),\n) -> bool {\n";
+    text += "pub(crate) fn evaluate_into<V: Value>(";
+    text += "n_bands: usize, direction: [V; 3], put: impl FnMut(usize, V)) -> bool {\n";
     text += "    match n_bands {\n";
     for n in 1..=MOST {
         writeln!(text, "        {n} => bands_{n}(direction, put),").expect("a string takes all");

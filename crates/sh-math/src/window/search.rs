@@ -1,7 +1,8 @@
 //! The least window that lifts a light's reconstruction above zero.
 
 use super::laplacian;
-use crate::{Rgb, evaluate_f64};
+use crate::evaluate::visit;
+use crate::{Bands, Rgb, evaluate_f64};
 use glam::DVec3;
 
 /// Grid directions per coefficient: about twelve per wavelength, so the lowest one errs by 3 % before it is refined.
@@ -77,21 +78,21 @@ impl<'a> Field<'a> {
         let mut candidates: Vec<(f64, usize)> = own().zip(0..).filter(|&(value, _)| value <= reach).collect();
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         candidates.truncate(MOST_CANDIDATES);
-        candidates
-            .into_iter()
-            .map(|(value, at)| self.descend(self.directions[at], value, window, channel))
-            .fold(lowest, f64::min)
+        let coefficients = windowed_channel(self.light, window, channel);
+        let refined = candidates.into_iter().map(|(value, at)| self.descend(self.directions[at], value, &coefficients));
+        refined.fold(lowest, f64::min)
     }
 
     /// Compass search from one direction: steps along two tangents, halved when none leads down.
-    fn descend(&self, start: DVec3, value: f64, window: &[f64], channel: usize) -> f64 {
+    fn descend(&self, start: DVec3, value: f64, coefficients: &[f64]) -> f64 {
         let (mut at, mut lowest) = (start, value);
-        let mut step = 1.0 / self.light.bands.count() as f64;
+        let mut step = 0.5 / self.light.bands.count() as f64;
+        // next to a minimum the value errs by the square of this
         while step > 1e-5 {
             let (tangent, bitangent) = at.any_orthonormal_pair();
             let tries = [tangent, -tangent, bitangent, -bitangent].map(|along| (at + along * step).normalize());
             let best = tries
-                .map(|direction| (self.value(direction, window, channel), direction))
+                .map(|direction| (reconstruct(self.light.bands, coefficients, direction), direction))
                 .into_iter()
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             match best {
@@ -101,14 +102,19 @@ impl<'a> Field<'a> {
         }
         lowest
     }
+}
 
-    /// The windowed reconstruction of one channel.
-    fn value(&self, direction: DVec3, window: &[f64], channel: usize) -> f64 {
-        let mut basis = vec![0.0; self.light.bands.coefficients()];
-        evaluate_f64(self.light.bands, direction, &mut basis);
-        let bands: Vec<f64> = self.light.bands.degrees().map(|l| band_sum(self.light, &basis, l, channel)).collect();
-        weighted(&bands, window)
-    }
+/// The coefficients of one channel under a window.
+fn windowed_channel(light: &Rgb, window: &[f64], channel: usize) -> Vec<f64> {
+    let factor = |i: usize| window.get(i.isqrt()).copied().unwrap_or(0.0);
+    light.values.iter().enumerate().map(|(i, value)| factor(i) * f64::from(value[channel])).collect()
+}
+
+/// Value of one channel along a direction.
+fn reconstruct(bands: Bands, coefficients: &[f64], direction: DVec3) -> f64 {
+    let mut sum = 0.0;
+    visit(bands, direction.to_array(), |i, y| sum += coefficients[i] * y);
+    sum
 }
 
 /// What degree `l` of one channel adds where the basis functions are `basis`.
