@@ -108,5 +108,8 @@ fn gram_with_factorials_can_fail() {
     let wrapped = defect(8, |direction| textbook(8, direction, half, wrapping));
     assert!(wrapped.is_nan() || wrapped >= 0.01, "13! must wrap and break 8 bands, the defect is {wrapped}");
     let overflown = defect(19, |direction| textbook(19, direction, half, short));
-    assert!(overflown.is_nan() || overflown >= 0.01, "35! must overflow f32 and break 19 bands, the defect is {overflown}");
+    assert!(
+        overflown.is_nan() || overflown >= 0.01,
+        "35! must overflow f32 and break 19 bands, the defect is {overflown}"
+    );
 }
