@@ -3,7 +3,8 @@
 use crate::legendre::{gauss_rule, polynomials};
 use crate::{Bands, zonal};
 
-/// Most steps of the descent, enough for about 30 bands to the last digit. Whatever is reached is a square, so never negative.
+/// Most steps of the descent. Very many bands (129) stop here short of the optimum; the kernel is a square at every step,
+/// so it is never negative.
 const MOST_STEPS: usize = 3000;
 
 /// Factors `s_l` per band, `s_0 = 1`, whose kernel `sum_l s_l (2l+1)/(4 pi) P_l` is nowhere negative and which keep the
