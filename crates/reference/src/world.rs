@@ -1,0 +1,148 @@
+//! The scene as rays see it: what they hit, and the surface that is there.
+
+use crate::Receiver;
+use glam::Vec3;
+use raytrace::{Hit, Ray, Tracer};
+use sampling::rng::Rng;
+use scene::{Material, Scene};
+
+/// A scene prepared for tracing.
+#[derive(Debug)]
+pub struct World<'a> {
+    /// Surfaces that stop light.
+    solid: Layer<'a>,
+    /// Surfaces that only the camera sees: they blend or transmit. None where the scene has none.
+    veils: Option<Layer<'a>>,
+}
+
+/// The triangles of some of the meshes, in one tracer.
+struct Layer<'a> {
+    scene: &'a Scene,
+    tracer: Tracer,
+    /// Mesh and triangle in it of each traced triangle.
+    parts: Vec<[u32; 2]>,
+    /// Unit normal of each traced triangle, on the side of its counter-clockwise winding.
+    normals: Vec<Vec3>,
+}
+
+/// What a camera ray shows: a lit surface and its own emission.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen {
+    /// The side of the surface that faces the camera.
+    pub(crate) surface: Receiver,
+    /// Radiance that it emits.
+    pub(crate) emission: Vec3,
+}
+
+impl<'a> World<'a> {
+    /// Builds the trees; the scene stays where it is.
+    #[must_use]
+    pub fn new(scene: &'a Scene) -> Self {
+        let solid = Layer::new(scene, Material::blocks_rays);
+        let veils = Layer::new(scene, |material| !material.blocks_rays());
+        Self { solid, veils: (!veils.parts.is_empty()).then_some(veils) }
+    }
+
+    /// Whether anything stops light on the way to infinity.
+    pub(crate) fn occluded(&self, origin: Vec3, direction: Vec3) -> bool {
+        self.solid.tracer.occluded(&Ray::new(origin, direction), &|t, u, v| self.solid.is_there(t, u, v))
+    }
+
+    /// The surface that a ray of light meets, on the side where it arrives.
+    pub(crate) fn closest(&self, origin: Vec3, direction: Vec3) -> Option<Receiver> {
+        let hit = self.solid.closest(&Ray::new(origin, direction))?;
+        Some(self.solid.surface(&hit))
+    }
+
+    /// The surface that a camera ray shows. Backs of single-sided surfaces are not drawn; a veil is seen with the
+    /// probability of its opacity.
+    pub(crate) fn seen(&self, origin: Vec3, direction: Vec3, rng: &mut Rng) -> Option<Seen> {
+        let mut ray = Ray::new(origin, direction);
+        let behind = self.solid.drawn(ray);
+        if let Some(veils) = &self.veils {
+            ray.t_max = behind.map_or(f32::INFINITY, |hit| hit.t);
+            while let Some(hit) = veils.drawn(ray) {
+                if rng.next_f32() < veils.opacity(&hit) {
+                    return Some(veils.seen(&hit));
+                }
+                ray.t_min = hit.t.next_up();
+            }
+        }
+        behind.map(|hit| self.solid.seen(&hit))
+    }
+}
+
+impl<'a> Layer<'a> {
+    fn new(scene: &'a Scene, belongs: impl Fn(&Material) -> bool) -> Self {
+        let (mut positions, mut triangles, mut masked) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut parts, mut normals) = (Vec::new(), Vec::new());
+        for (m, mesh) in scene.meshes.iter().enumerate().filter(|(m, _)| belongs(scene.material(*m))) {
+            let first = positions.len() as u32;
+            positions.extend_from_slice(&mesh.positions);
+            for (t, corners) in mesh.triangles.iter().enumerate() {
+                triangles.push(corners.map(|corner| first + corner));
+                parts.push([m as u32, t as u32]);
+                normals.push(mesh.face_normal(t));
+                masked.push(scene.material(m).is_masked());
+            }
+        }
+        Self { scene, tracer: Tracer::build(&positions, &triangles, &masked), parts, normals }
+    }
+
+    fn part(&self, triangle: u32) -> (usize, usize) {
+        let [mesh, triangle] = self.parts[triangle as usize];
+        (mesh as usize, triangle as usize)
+    }
+
+    /// The filter of masked triangles.
+    fn is_there(&self, triangle: u32, u: f32, v: f32) -> bool {
+        let (mesh, triangle) = self.part(triangle);
+        self.scene.coverage(mesh, triangle, u, v) > 0.0
+    }
+
+    fn closest(&self, ray: &Ray) -> Option<Hit> {
+        self.tracer.closest(ray, &|t, u, v| self.is_there(t, u, v))
+    }
+
+    /// The first hit that is drawn: a front, or a back of a double-sided surface.
+    fn drawn(&self, mut ray: Ray) -> Option<Hit> {
+        loop {
+            let hit = self.closest(&ray)?;
+            if hit.front || self.scene.material(self.part(hit.triangle).0).double_sided {
+                return Some(hit);
+            }
+            ray.t_min = hit.t.next_up();
+        }
+    }
+
+    /// Share of light from behind that a veil hides.
+    fn opacity(&self, hit: &Hit) -> f32 {
+        let (mesh, triangle) = self.part(hit.triangle);
+        self.scene.coverage(mesh, triangle, hit.u, hit.v) * (1.0 - self.scene.material(mesh).transmission)
+    }
+
+    fn seen(&self, hit: &Hit) -> Seen {
+        let (mesh, triangle) = self.part(hit.triangle);
+        Seen { surface: self.surface(hit), emission: self.scene.emission(mesh, triangle, hit.u, hit.v) }
+    }
+
+    /// The side of the surface that was hit. The shading normal goes with the side of the winding.
+    fn surface(&self, hit: &Hit) -> Receiver {
+        let (m, triangle) = self.part(hit.triangle);
+        let mesh = &self.scene.meshes[m];
+        let geometric_normal = self.normals[hit.triangle as usize] * if hit.front { 1.0 } else { -1.0 };
+        let normal = mesh.normal(triangle, hit.u, hit.v);
+        Receiver {
+            position: mesh.position(triangle, hit.u, hit.v),
+            normal: if normal.dot(geometric_normal) < 0.0 { -normal } else { normal },
+            geometric_normal,
+            albedo: self.scene.albedo(m, triangle, hit.u, hit.v),
+        }
+    }
+}
+
+impl std::fmt::Debug for Layer<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Layer").field("scene", &self.scene.name).field("triangles", &self.parts.len()).finish()
+    }
+}
