@@ -27,17 +27,15 @@ impl View {
     /// The view of a frame that passed [`Frame::check`], of a scene with this diagonal.
     pub(crate) fn new(frame: &Frame, diagonal: f64) -> Self {
         let camera = &frame.camera;
-        let eye = vector(camera.eye);
-        let forward = (vector(camera.target) - eye).normalize();
-        let right = forward.cross(steady_up(forward, vector(camera.up))).normalize();
+        let [right, up, back] = camera.axes().map(|axis| axis.as_dvec3());
         let tangent = libm::tan(f64::from(camera.vertical_fov) / 2.0);
         let aspect = f64::from(frame.width) / f64::from(frame.height);
         let extent = if diagonal > 0.0 && diagonal.is_finite() { diagonal } else { 1.0 };
         Self {
-            eye,
+            eye: vector(camera.eye),
             right,
-            up: right.cross(forward),
-            forward,
+            up,
+            forward: -back,
             tangent: DVec2::new(tangent * aspect, tangent),
             samples: [frame.width * frame.supersample, frame.height * frame.supersample],
             near: NEAR_SHARE * extent,
@@ -65,22 +63,6 @@ impl View {
     /// The world direction, not unit, seen at a place on the picture.
     pub(crate) fn direction(&self, centre: DVec2) -> Vec3 {
         (self.forward + self.right * (centre.x * self.tangent.x) + self.up * (centre.y * self.tangent.y)).as_vec3()
-    }
-}
-
-/// `up`, or the axis least along `forward` where `up` is no help.
-fn steady_up(forward: DVec3, up: DVec3) -> DVec3 {
-    let unit = up.normalize_or_zero();
-    if forward.cross(unit).length() >= 1e-6 {
-        return unit;
-    }
-    let a = forward.abs();
-    if a.x <= a.y && a.x <= a.z {
-        DVec3::X
-    } else if a.y <= a.z {
-        DVec3::Y
-    } else {
-        DVec3::Z
     }
 }
 
