@@ -11,14 +11,12 @@ pub fn curve(tonemap: Tonemap, x: f32) -> f32 {
     if x == f32::INFINITY {
         return 1.0;
     }
+    // In f64: the square of the largest f32 is finite, and rounding does not make a curve fall.
+    let wide = f64::from(x);
     match tonemap {
         Tonemap::None => x.min(1.0),
-        Tonemap::Reinhard => x / (1.0 + x),
-        // In f64, where the square of the largest f32 is finite.
-        Tonemap::Filmic => {
-            let x = f64::from(x);
-            ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).min(1.0) as f32
-        }
+        Tonemap::Reinhard => (wide / (1.0 + wide)) as f32,
+        Tonemap::Filmic => ((wide * (2.51 * wide + 0.03)) / (wide * (2.43 * wide + 0.59) + 0.14)).min(1.0) as f32,
     }
 }
 

@@ -56,10 +56,15 @@ fn ray(frame: &Frame, x: u32, y: u32) -> Ray {
     Ray::new(eye.as_vec3(), direction.as_vec3())
 }
 
-/// The first front that a ray meets: backs are not drawn, so the soup is asked one triangle at a time where a back comes first.
-fn first_front(triangles: &[[Vec3; 3]], ray: &Ray) -> Option<(usize, Hit)> {
-    let hits = triangles.iter().enumerate().filter_map(|(i, corners)| {
-        let hit = Tracer::build(corners, &[[0, 1, 2]], &[]).closest(ray, &|_, _, _| true)?;
+/// One tracer per triangle: backs are not drawn, so a ray must be able to go on behind them.
+fn tracers(triangles: &[[Vec3; 3]]) -> Vec<Tracer> {
+    triangles.iter().map(|corners| Tracer::build(corners, &[[0, 1, 2]], &[])).collect()
+}
+
+/// The first front that a ray meets.
+fn first_front(tracers: &[Tracer], ray: &Ray) -> Option<(usize, Hit)> {
+    let hits = tracers.iter().enumerate().filter_map(|(i, tracer)| {
+        let hit = tracer.closest(ray, &|_, _, _| true)?;
         hit.front.then_some((i, hit))
     });
     hits.min_by(|a, b| a.1.t.total_cmp(&b.1.t))
@@ -76,9 +81,10 @@ fn draw(triangles: &[[Vec3; 3]], color: impl Fn(usize, Vec3) -> [f32; 4]) -> Ima
 /// Number of pixels, and of those well inside a triangle, where the picture shows another triangle than the ray meets.
 fn disagreements(triangles: &[[Vec3; 3]], image: &Image) -> (usize, usize) {
     let (mut all, mut inside) = (0, 0);
+    let tracers = tracers(triangles);
     for (i, pixel) in image.linear.iter().enumerate() {
         let (x, y) = (i as u32 % image.width, i as u32 / image.width);
-        let hit = first_front(triangles, &ray(&frame(), x, y));
+        let hit = first_front(&tracers, &ray(&frame(), x, y));
         let expected = hit.map_or(0, |(triangle, _)| triangle + 1);
         if (pixel[0] * 1024.0).round() as usize != expected {
             all += 1;
@@ -109,10 +115,11 @@ fn colours_are_interpolated_on_the_triangle_and_not_on_the_picture() {
     let triangles = soup(40, 11);
     let place = |p: Vec3| (p * 0.05 + 0.5).to_array();
     let image = draw(&triangles, |_, p| [place(p)[0], place(p)[1], place(p)[2], 1.0]);
+    let tracers = tracers(&triangles);
     let (mut compared, mut worst) = (0, 0.0_f32);
     for (i, pixel) in image.linear.iter().enumerate() {
         let ray = ray(&frame(), i as u32 % image.width, i as u32 / image.width);
-        let Some((_, hit)) = first_front(&triangles, &ray) else { continue };
+        let Some((_, hit)) = first_front(&tracers, &ray) else { continue };
         if hit.u.min(hit.v).min(1.0 - hit.u - hit.v) > EDGE {
             let expected = place(ray.origin + ray.direction * hit.t);
             worst = worst.max(handmade::distance(*pixel, expected));
