@@ -54,52 +54,73 @@ fn size<F: Lanes>(a: Point<F>) -> F {
 fn edge<F: Lanes>(p: Point<F>, q: Point<F>) -> (Point<F>, F) {
     let along = sub(q, p);
     let (p_size, q_size) = (size(p), size(q));
-    let near: Point<F> = std::array::from_fn(|i| F::where_less(q_size, p_size, q[i], p[i]));
+    let near = [
+        F::where_less(q_size, p_size, q[0], p[0]),
+        F::where_less(q_size, p_size, q[1], p[1]),
+        F::where_less(q_size, p_size, q[2], p[2]),
+    ];
     let bound = q_size.min(p_size).mul(size(along)).mul(F::splat(SLACK)).add(F::splat(UNDERFLOW));
     (cross(near, along), bound)
+}
+
+/// Corner `k` of the four triangles, from a point.
+#[inline(always)]
+fn corner<F: Lanes>(block: &Block, k: usize, from: Point<F>) -> Point<F> {
+    let at = [F::load(&block.corners[3 * k]), F::load(&block.corners[3 * k + 1]), F::load(&block.corners[3 * k + 2])];
+    sub(at, from)
 }
 
 /// Looks at a block from a point.
 #[inline(always)]
 pub(crate) fn see<F: Lanes>(block: &Block, origin: Vec3) -> Seen {
     let from = [F::splat(origin.x), F::splat(origin.y), F::splat(origin.z)];
-    let corner =
-        |k: usize| -> Point<F> { sub(std::array::from_fn(|axis| F::load(&block.corners[3 * k + axis])), from) };
-    let (a, b, c) = (corner(0), corner(1), corner(2));
+    let (a, b, c) = (corner(block, 0, from), corner(block, 1, from), corner(block, 2, from));
     let edges = [edge(b, c), edge(c, a), edge(a, b)];
     let whole = dot(a, edges[0].0);
     let whole_bound = size(a).mul(edges[0].1).add(F::splat(UNDERFLOW));
     let sure = whole.abs().above(whole_bound) & block.valid;
-    let mut turn = [0.0f32; BLOCK];
-    F::where_less(whole, F::splat(0.0), F::splat(-1.0), F::splat(1.0)).store(&mut turn);
-    if sure != (1 << BLOCK) - 1 {
-        settle(block, origin, sure, &mut turn);
+    let turn = F::where_less(whole, F::splat(0.0), F::splat(-1.0), F::splat(1.0));
+    let mut turn = turn.mul(F::load(&PRESENT[block.valid as usize % 16]));
+    if sure != block.valid {
+        turn = F::load(&settle(block, origin));
     }
     let mut seen = Seen::NOTHING;
-    let turn = F::load(&turn);
+    let missing = F::where_less(turn.abs(), F::splat(0.5), F::splat(-1.0), F::splat(0.0));
     for (k, (normal, bound)) in edges.into_iter().enumerate() {
         for axis in 0..3 {
             normal[axis].mul(turn).store(&mut seen.normals[3 * k + axis]);
         }
         // Where nothing can be hit the bound is -1 and the normal 0: never a candidate.
-        F::where_less(turn.abs(), F::splat(0.5), F::splat(-1.0), bound).store(&mut seen.slack[k]);
+        F::where_less(missing, F::splat(0.0), missing, bound).store(&mut seen.slack[k]);
     }
     seen
 }
 
-/// Decides exactly on which side the origin lies of the triangles that single precision left open.
+/// One for each bit that is set.
+const PRESENT: [[f32; BLOCK]; 16] = present();
+
+const fn present() -> [[f32; BLOCK]; 16] {
+    let mut table = [[0.0; BLOCK]; 16];
+    let mut i = 0;
+    while i < 64 {
+        if (i / 4) >> (i % 4) & 1 == 1 {
+            table[i / 4][i % 4] = 1.0;
+        }
+        i += 1;
+    }
+    table
+}
+
+/// Decides exactly on which side of each triangle the origin lies, where single precision leaves one open.
 #[cold]
 #[inline(never)]
-fn settle(block: &Block, origin: Vec3, sure: u32, turn: &mut [f32; BLOCK]) {
-    for (lane, turn) in turn.iter_mut().enumerate() {
-        if block.valid >> lane & 1 == 0 {
-            *turn = 0.0;
-        } else if sure >> lane & 1 == 0 {
-            let [a, b, c] = block.corners(lane).map(|corner| corner - origin);
-            let whole = volume(a, b, c);
-            *turn = if whole == 0.0 { 0.0 } else { whole.signum() as f32 };
-        }
-    }
+fn settle(block: &Block, origin: Vec3) -> [f32; BLOCK] {
+    std::array::from_fn(|lane| {
+        let [a, b, c] = block.corners(lane).map(|corner| corner - origin);
+        let whole = volume(a, b, c);
+        let counts = block.valid >> lane & 1 == 1 && whole != 0.0;
+        if counts { whole.signum() as f32 } else { 0.0 }
+    })
 }
 
 /// Which triangles of a block one direction may meet, and which of those beyond doubt; components up to 1.
@@ -109,7 +130,8 @@ pub(crate) fn candidates<F: Lanes>(seen: &Seen, direction: Vec3) -> (u32, u32) {
     let zero = F::splat(0.0);
     let (mut out, mut sure) = (0, u32::MAX);
     for k in 0..3 {
-        let normal = std::array::from_fn(|axis| F::load(&seen.normals[3 * k + axis]));
+        let normal =
+            [F::load(&seen.normals[3 * k]), F::load(&seen.normals[3 * k + 1]), F::load(&seen.normals[3 * k + 2])];
         let product = dot(d, normal);
         let slack = F::load(&seen.slack[k]);
         out |= zero.above(product.add(slack));

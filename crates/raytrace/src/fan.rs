@@ -123,14 +123,21 @@ impl Job for OccludedFan<'_> {
 /// A packet of a group; None where a ray goes along an axis or is no unit direction.
 #[inline(always)]
 fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, group: &'a Group) -> Option<Packet<'a, R>> {
-    let direction = [0, 1, 2].map(|axis| R::load(&group.directions[axis]));
+    let [x, y, z] = &group.directions;
+    let direction = [R::load(x), R::load(y), R::load(z)];
     let one = R::splat(1.0);
-    let inverse = direction.map(|d| one.div(d));
-    let usual = inverse.map(|i| R::splat(STEEPEST).above(i.abs()) & i.abs().above(R::splat(LEAST)));
-    if usual != [(1u32 << R::N) - 1; 3] {
+    let inverse = [one.div(direction[0]), one.div(direction[1]), one.div(direction[2])];
+    let (steepest, least) = (R::splat(STEEPEST), R::splat(LEAST));
+    let all = (1u32 << R::N) - 1;
+    let (mut range, mut usual) = ([(0.0, 0.0); 3], all);
+    for axis in 0..3 {
+        let size = inverse[axis].abs();
+        usual &= steepest.above(size) & size.above(least);
+        range[axis] = (inverse[axis].lowest(), inverse[axis].highest());
+    }
+    if usual != all {
         return None;
     }
-    let range = inverse.map(|i| (i.lowest(), i.highest()));
     let bit = |axis: usize| usize::from(range[axis].0 < 0.0) << axis;
     let octant = bit(0) | bit(1) | bit(2);
     let mut inverse_each = [[0.0; WIDEST]; 3];

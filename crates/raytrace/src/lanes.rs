@@ -122,6 +122,85 @@ impl<const N: usize> Lanes for Row<N> {
     }
 }
 
+/// Two rows in one.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair<L>(L, L);
+
+impl<L: Lanes> Lanes for Pair<L> {
+    const N: usize = 2 * L::N;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Pair(L::splat(value), L::splat(value))
+    }
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        Pair(L::load(from), L::load(&from[L::N..]))
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        self.0.store(to);
+        self.1.store(&mut to[L::N..]);
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Pair(self.0.add(other.0), self.1.add(other.1))
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Pair(self.0.sub(other.0), self.1.sub(other.1))
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Pair(self.0.mul(other.0), self.1.mul(other.1))
+    }
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Pair(self.0.div(other.0), self.1.div(other.1))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Pair(self.0.min(other.0), self.1.min(other.1))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Pair(self.0.max(other.0), self.1.max(other.1))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Pair(self.0.abs(), self.1.abs())
+    }
+
+    #[inline(always)]
+    fn lowest(self) -> f32 {
+        self.0.min(self.1).lowest()
+    }
+
+    #[inline(always)]
+    fn highest(self) -> f32 {
+        self.0.max(self.1).highest()
+    }
+
+    #[inline(always)]
+    fn above(self, other: Self) -> u32 {
+        self.0.above(other.0) | self.1.above(other.1) << L::N
+    }
+
+    #[inline(always)]
+    fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self {
+        Pair(L::where_less(a.0, b.0, yes.0, no.0), L::where_less(a.1, b.1, yes.1, no.1))
+    }
+}
+
 /// The path of processors without wide registers.
 pub(crate) struct Portable;
 

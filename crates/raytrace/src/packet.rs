@@ -5,11 +5,11 @@ use crate::lanes::{Lanes, Path};
 use crate::ray::Line;
 use crate::sight::{Occluders, Plane3, Sights};
 use crate::tree::{Child, Node, Tree, WIDTH};
-use crate::walk::{Apart, LATER, PERMUTED, Solid, Walker, blocked, blocked_for_sure, planes};
+use crate::walk::{Apart, LATER, PERMUTED, Solid, View, Walker, blocked, blocked_for_sure, planes};
 use glam::Vec3;
 
 /// Packets with at most this many rays left are walked ray by ray.
-const ALONE: u32 = 2;
+const ALONE: u32 = 3;
 
 /// Most rays in a packet, at any level.
 pub(crate) const WIDEST: usize = 16;
@@ -99,11 +99,9 @@ impl<R: Lanes> Walk<'_, R> {
     #[inline(always)]
     fn meets(&self, triangle: &Plane3) -> (u32, u32) {
         let zero = R::splat(0.0);
-        let edge = |k: usize| {
-            let normal = std::array::from_fn(|axis| R::splat(triangle.normals[3 * k + axis]));
-            (dot(self.packet.direction, normal), R::splat(triangle.slack[k]))
-        };
-        let [(a, a_slack), (b, b_slack), (c, c_slack)] = [edge(0), edge(1), edge(2)];
+        let (a, a_slack) = self.edge(triangle, 0);
+        let (b, b_slack) = self.edge(triangle, 1);
+        let (c, c_slack) = self.edge(triangle, 2);
         let most = a.add(a_slack).min(b.add(b_slack)).min(c.add(c_slack));
         let out = zero.above(most);
         let least = a.sub(a_slack).min(b.sub(b_slack)).min(c.sub(c_slack));
@@ -111,17 +109,30 @@ impl<R: Lanes> Walk<'_, R> {
         (!out & all, least.above(zero) & !out)
     }
 
+    /// Products of the rays with the plane of one edge, and their bound.
+    #[inline(always)]
+    fn edge(&self, triangle: &Plane3, k: usize) -> (R, R) {
+        let normal = [
+            R::splat(triangle.normals[3 * k]),
+            R::splat(triangle.normals[3 * k + 1]),
+            R::splat(triangle.normals[3 * k + 2]),
+        ];
+        (dot(self.packet.direction, normal), R::splat(triangle.slack[k]))
+    }
+
     /// Which rays of a mask the triangles of a block stop.
     #[inline(always)]
     fn try_block<P: Path>(&self, index: usize, mask: u32, scratch: &mut Scratch) -> u32 {
         let block = &self.tree.blocks[index];
-        let seen = *scratch.sights.view::<P::Four>(self.tree, index);
+        let Scratch { sights, occluders, .. } = scratch;
+        let origin = sights.origin;
+        let seen = sights.view::<P::Four>(self.tree, index);
         let mut stopped = 0;
         let mut lanes = block.valid;
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
-            let (maybe, sure) = self.meets(&Plane3::of(&seen, lane));
+            let (maybe, sure) = self.meets(&Plane3::of(seen, lane));
             let open = maybe & mask & !stopped;
             if open == 0 {
                 continue;
@@ -132,12 +143,12 @@ impl<R: Lanes> Walk<'_, R> {
             while doubt != 0 {
                 let ray = doubt.trailing_zeros() as usize;
                 doubt &= doubt - 1;
-                let line = self.line(ray, scratch.sights.origin);
+                let line = self.line(ray, origin);
                 let stop = blocked_for_sure(block, lane, &line, self.solid);
                 now |= u32::from(stop) << ray;
             }
             if now != 0 && !masked {
-                scratch.occluders.keep(index, lane, &seen);
+                occluders.keep(index, lane, seen);
             }
             stopped |= now;
             if stopped == mask {
@@ -232,13 +243,12 @@ pub(crate) fn alone<P: Path>(
     scratch: &mut Scratch,
 ) -> bool {
     let Scratch { sights, occluders, stack, .. } = scratch;
-    let view = |index: usize| *sights.view::<P::Four>(tree, index);
-    let Some((index, lane)) = blocked::<P>(tree, walker, from, stack, solid, view) else {
+    let Some((index, lane)) = blocked::<P>(tree, walker, from, stack, solid, sights) else {
         return false;
     };
     if tree.blocks[index].masked >> lane & 1 == 0 {
-        let seen = *sights.view::<P::Four>(tree, index);
-        occluders.keep(index, lane, &seen);
+        let seen = sights.view::<P::Four>(tree, index);
+        occluders.keep(index, lane, seen);
     }
     true
 }

@@ -3,6 +3,7 @@
 use crate::block::{Seen, see};
 use crate::lanes::Lanes;
 use crate::tree::Tree;
+use crate::walk::View;
 use glam::Vec3;
 
 /// Blocks remembered at once (48 KiB: most of what one receiver's rays touch again and again).
@@ -33,10 +34,12 @@ impl Sights {
         }
         self.origin = origin;
     }
+}
 
+impl View for Sights {
     /// A block as the origin sees it.
     #[inline(always)]
-    pub(crate) fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
+    fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
         let place = block % REMEMBERED;
         let key = self.fan << 32 | block as u64;
         if self.keys[place] != key {
@@ -60,10 +63,14 @@ pub(crate) struct Plane3 {
 impl Plane3 {
     #[inline(always)]
     pub(crate) fn of(seen: &Seen, lane: usize) -> Plane3 {
-        Plane3 {
-            normals: std::array::from_fn(|i| seen.normals[i][lane]),
-            slack: std::array::from_fn(|i| seen.slack[i][lane]),
+        let mut plane = Plane3 { normals: [0.0; 9], slack: [0.0; 3] };
+        for (i, row) in seen.normals.iter().enumerate() {
+            plane.normals[i] = row[lane];
         }
+        for (i, row) in seen.slack.iter().enumerate() {
+            plane.slack[i] = row[lane];
+        }
+        plane
     }
 }
 

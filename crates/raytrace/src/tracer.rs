@@ -1,12 +1,12 @@
 //! The public face: triangles in, answers about rays out.
 
-use crate::block::see;
+use crate::block::Seen;
 use crate::build::build;
 use crate::lanes::Path;
 use crate::level::{Job, Level, dispatch};
 use crate::ray::{Hit, Line, Ray};
 use crate::tree::{Child, Tree};
-use crate::walk::{Solid, Walker, blocked, nearest};
+use crate::walk::{Fresh, Solid, Walker, blocked, nearest};
 use glam::Vec3;
 use std::cell::Cell;
 
@@ -107,8 +107,8 @@ impl Job for Occluded<'_> {
 
     #[inline(always)]
     fn run<P: Path>(self) -> bool {
-        let view = |index: usize| see::<P::Four>(&self.tree.blocks[index], self.line.origin);
+        let mut view = Fresh { origin: self.line.origin, seen: Seen::NOTHING };
         let walker = Walker::new(self.tree, self.line);
-        blocked::<P>(self.tree, &walker, Child::node(0), self.stack, self.solid, view).is_some()
+        blocked::<P>(self.tree, &walker, Child::node(0), self.stack, self.solid, &mut view).is_some()
     }
 }

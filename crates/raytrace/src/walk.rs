@@ -103,6 +103,25 @@ impl Walker {
     }
 }
 
+/// Where a walk gets its prepared blocks from.
+pub(crate) trait View {
+    fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen;
+}
+
+/// Prepares each block anew: for a ray that shares its origin with no other.
+pub(crate) struct Fresh {
+    pub(crate) origin: Vec3,
+    pub(crate) seen: Seen,
+}
+
+impl View for Fresh {
+    #[inline(always)]
+    fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
+        self.seen = see::<F>(&tree.blocks[block], self.origin);
+        &self.seen
+    }
+}
+
 /// Whether anything blocks a ray, from a child of the tree on down.
 #[inline(always)]
 pub(crate) fn blocked<P: Path>(
@@ -111,14 +130,14 @@ pub(crate) fn blocked<P: Path>(
     from: Child,
     stack: &mut Vec<u32>,
     solid: Solid<'_>,
-    mut view: impl FnMut(usize) -> Seen,
+    view: &mut impl View,
 ) -> Option<(usize, usize)> {
     let base = stack.len();
     let mut child = from;
     loop {
         if let Some(index) = child.as_block() {
-            let seen = view(index);
-            let found = blocked_by::<P>(&tree.blocks[index], &seen, &walker.line, solid);
+            let seen = view.view::<P::Four>(tree, index);
+            let found = blocked_by::<P>(&tree.blocks[index], seen, &walker.line, solid);
             if let Some(lane) = found {
                 stack.truncate(base);
                 return Some((index, lane));

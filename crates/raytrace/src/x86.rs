@@ -243,7 +243,7 @@ pub(crate) struct Avx2;
 impl Path for Avx2 {
     type Four = Row4;
     type Eight = Row8;
-    type Rays = Row8;
+    type Rays = crate::lanes::Pair<Row8>;
 }
 
 /// Processors with AVX-512.
