@@ -13,9 +13,7 @@ pub enum Error {
         reason: String,
     },
     /// An adapter stands there but gives no device.
-    #[error(
-        "the GPU adapter {adapter} gave no device: {reason}; update its driver or use the CPU renderer"
-    )]
+    #[error("the GPU adapter {adapter} gave no device: {reason}; update its driver or use the CPU renderer")]
     NoDevice {
         /// Name of the adapter.
         adapter: String,
@@ -63,24 +61,11 @@ impl Error {
         unit: &'static str,
         advice: &'static str,
     ) -> Result<(), Self> {
-        if needed <= limit {
-            Ok(())
-        } else {
-            Err(Self::TooLarge {
-                what: what(),
-                needed,
-                limit,
-                unit,
-                advice,
-            })
-        }
+        if needed <= limit { Ok(()) } else { Err(Self::TooLarge { what: what(), needed, limit, unit, advice }) }
     }
 
     /// An [`Error::Invalid`] about `what`.
     pub(crate) fn invalid(what: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self::Invalid {
-            what: what.into(),
-            problem: problem.into(),
-        }
+        Self::Invalid { what: what.into(), problem: problem.into() }
     }
 }

@@ -31,9 +31,9 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A plain frame: light not turned, exposure 0, no tone curve, no bloom, one sample per pixel, with sky.
+    /// A frame with nothing but the light: not turned, exposure 0, no tone curve, no bloom, one sample per pixel, with sky.
     #[must_use]
-    pub fn new(camera: Camera, width: u32, height: u32) -> Self {
+    pub fn plain(camera: Camera, width: u32, height: u32) -> Self {
         Self {
             camera,
             width,
@@ -48,7 +48,7 @@ impl Frame {
     }
 
     /// Checks every value on its own; whether the sizes fit a GPU is the renderer's affair.
-    pub(crate) fn validate(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         let wrong = |problem: &str| Err(Error::invalid("the frame", problem));
         let camera = &self.camera;
         let numbers = [camera.eye, camera.target, camera.up];

@@ -31,18 +31,14 @@ impl Gpu {
     /// # Errors
     /// [`Error::NoAdapter`] where no driver is installed, [`Error::NoDevice`] where it fails to start.
     pub fn new(driver: Driver) -> Result<Self, Error> {
-        let instance =
-            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             force_fallback_adapter: driver == Driver::Software,
             ..Default::default()
         };
-        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|error| {
-            Error::NoAdapter {
-                reason: one_line(&error.to_string()),
-            }
-        })?;
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|error| Error::NoAdapter { reason: one_line(&error.to_string()) })?;
         Self::open(&adapter)
     }
 
@@ -58,22 +54,11 @@ impl Gpu {
             memory_hints: wgpu::MemoryHints::Performance,
             ..Default::default()
         };
-        let (device, queue) =
-            pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
-                Error::NoDevice {
-                    adapter: info.name.clone(),
-                    reason: one_line(&error.to_string()),
-                }
-            })?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| Error::NoDevice { adapter: info.name.clone(), reason: one_line(&error.to_string()) })?;
         let description = format!("{} ({})", info.name, info.backend);
         let blends_float32 = features.contains(wgpu::Features::FLOAT32_BLENDABLE);
-        Ok(Self {
-            device,
-            queue,
-            limits,
-            blends_float32,
-            description,
-        })
+        Ok(Self { device, queue, limits, blends_float32, description })
     }
 
     /// Name of the adapter and of the interface, for people.
@@ -83,30 +68,16 @@ impl Gpu {
     }
 
     /// Runs `work` and turns what the driver complains about into an [`Error::Gpu`].
-    pub(crate) fn guarded<T>(
-        &self,
-        doing: &'static str,
-        work: impl FnOnce() -> Result<T, Error>,
-    ) -> Result<T, Error> {
-        let filters = [
-            wgpu::ErrorFilter::Validation,
-            wgpu::ErrorFilter::OutOfMemory,
-            wgpu::ErrorFilter::Internal,
-        ];
+    pub(crate) fn guarded<T>(&self, doing: &'static str, work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+        let filters = [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal];
         let scopes = filters.map(|filter| self.device.push_error_scope(filter));
         let result = work();
-        let complaints = scopes
-            .into_iter()
-            .rev()
-            .map(|scope| pollster::block_on(scope.pop()));
+        let complaints = scopes.into_iter().rev().map(|scope| pollster::block_on(scope.pop()));
         // All scopes are popped before any complaint is looked at.
         let complaint = complaints.collect::<Vec<_>>().into_iter().flatten().next();
         let value = result?;
         match complaint {
-            Some(error) => Err(Error::Gpu {
-                doing,
-                reason: one_line(&error.to_string()),
-            }),
+            Some(error) => Err(Error::Gpu { doing, reason: one_line(&error.to_string()) }),
             None => Ok(value),
         }
     }
@@ -116,10 +87,7 @@ impl Gpu {
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
             .map(drop)
-            .map_err(|error| Error::Gpu {
-                doing: "finishing a frame",
-                reason: one_line(&error.to_string()),
-            })
+            .map_err(|error| Error::Gpu { doing: "finishing a frame", reason: one_line(&error.to_string()) })
     }
 }
 

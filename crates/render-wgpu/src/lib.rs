@@ -4,13 +4,30 @@
 //! [`Gpu::new`] opens a device, [`Renderer::new`] uploads a baked scene and a light probe,
 //! [`Renderer::draw`] gives pictures.
 
+mod blend;
+mod bloom;
+mod check;
 mod error;
+mod finish;
 mod frame;
+mod fullscreen;
+mod geometry;
 mod gpu;
+mod gpu_data;
+mod material;
+mod picture;
 mod readback;
+mod reflection;
+mod relight;
 mod renderer;
+mod shaders;
+mod sky;
+mod surface;
+mod targets;
+mod texture;
+mod view;
 
 pub use error::Error;
 pub use frame::{Frame, Image, Tonemap};
 pub use gpu::{Driver, Gpu};
-pub use renderer::{Renderer, render};
+pub use renderer::{Renderer, Timings, render};

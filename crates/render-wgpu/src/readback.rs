@@ -20,20 +20,8 @@ impl Readback {
         let row_bytes = texture.width() * texel_bytes;
         let padded = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let size = u64::from(padded) * u64::from(texture.height());
-        let what = || {
-            format!(
-                "reading back a picture of {}x{}",
-                texture.width(),
-                texture.height()
-            )
-        };
-        Error::check_fits(
-            what,
-            size,
-            gpu.limits.max_buffer_size,
-            "bytes",
-            "ask for a smaller picture",
-        )?;
+        let what = || format!("reading back a picture of {}x{}", texture.width(), texture.height());
+        Error::check_fits(what, size, gpu.limits.max_buffer_size, "bytes", "ask for a smaller picture")?;
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
             size,
@@ -44,19 +32,11 @@ impl Readback {
             texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
                 buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(padded),
-                    rows_per_image: None,
-                },
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
             },
             texture.size(),
         );
-        Ok(Self {
-            buffer,
-            row_bytes: row_bytes as usize,
-            padded_row_bytes: padded as usize,
-        })
+        Ok(Self { buffer, row_bytes: row_bytes as usize, padded_row_bytes: padded as usize })
     }
 
     /// Waits for the copy, which must have been submitted, and converts each texel of type `T`.
@@ -65,23 +45,14 @@ impl Readback {
         gpu: &Gpu,
         convert: impl Fn(&T) -> U,
     ) -> Result<Vec<U>, Error> {
-        let failed = |reason: String| Error::Gpu {
-            doing: "reading a picture back",
-            reason,
-        };
+        let failed = |reason: String| Error::Gpu { doing: "reading a picture back", reason };
         let (sender, receiver) = std::sync::mpsc::channel();
         // The receiver outlives the wait below, so a failed send cannot matter.
-        self.buffer
-            .map_async(wgpu::MapMode::Read, .., move |result| {
-                drop(sender.send(result))
-            });
+        self.buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
         gpu.wait()?;
         let mapped = receiver.recv().map_err(|error| failed(error.to_string()))?;
         mapped.map_err(|error| failed(error.to_string()))?;
-        let bytes = self
-            .buffer
-            .get_mapped_range(..)
-            .map_err(|error| failed(error.to_string()))?;
+        let bytes = self.buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
         let rows = bytes.chunks_exact(self.padded_row_bytes);
         let texels = rows.flat_map(|row| bytemuck::cast_slice::<u8, T>(&row[..self.row_bytes]));
         Ok(texels.map(convert).collect())

@@ -1,13 +1,48 @@
 //! A baked scene under a light probe, ready to be drawn again and again.
 
-use crate::{Error, Frame, Gpu, Image};
+use crate::finish::Finish;
+use crate::readback::Readback;
+use crate::relight::Relight;
+use crate::surface::{Layouts, Surfaces};
+use crate::targets::{Size, Targets};
+use crate::{Error, Frame, Gpu, Image, check, gpu_data, material, picture, reflection, sky::Sky, surface, view};
 use coeff_io::Prt;
+use glam::Quat;
 use probe_io::Environment;
+use sh_math::{Bands, Rgb};
+use std::time::{Duration, Instant};
+
+/// Most that a 16-bit float holds.
+const LARGEST_HALF: f32 = 65504.0;
 
 /// A scene and its light on the GPU.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
+    /// Coefficients of the probe as it lies, not turned.
+    light: Rgb,
+    /// The rotation that the vertices are lit for.
+    lit_for: Option<Quat>,
+    relight: Relight,
+    near: f32,
+    view: wgpu::Buffer,
+    view_bindings: wgpu::BindGroup,
+    surfaces: Surfaces,
+    sky: Sky,
+    finish: Finish,
+    targets: Option<Targets>,
+    format: wgpu::TextureFormat,
+}
+
+/// How long a frame took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Timings {
+    /// Whether the light had turned since the last frame, so that every vertex was lit anew.
+    pub relit: bool,
+    /// Recording and handing over, on the CPU.
+    pub record: Duration,
+    /// From the call until the GPU has finished; nothing is read back.
+    pub frame: Duration,
 }
 
 impl Renderer {
@@ -15,8 +50,40 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Invalid`] for a scene that contradicts itself, [`Error::TooLarge`] for one that the GPU cannot hold.
-    pub fn new(gpu: &Gpu, _prt: &Prt, _environment: &Environment) -> Result<Self, Error> {
-        Ok(Self { gpu: gpu.clone() })
+    pub fn new(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
+        check::check(prt)?;
+        gpu.guarded("uploading the scene", || Self::build(gpu, prt, environment))
+    }
+
+    fn build(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
+        let bands = Bands::new(prt.transfer.bands).ok_or_else(|| {
+            let problem = format!("{} bands, not 1 to {}", prt.transfer.bands, Bands::MAX);
+            Error::invalid("the transfer", problem)
+        })?;
+        let device = &gpu.device;
+        let format = sample_format(gpu, prt);
+        let relight = Relight::new(gpu, &prt.transfer, gpu.limits.max_storage_buffer_binding_size)?;
+        let layouts = Layouts {
+            view: view_layout(device),
+            material: material::layout(device),
+            reflection: surface::shines(prt).then(|| reflection::layout(device)),
+        };
+        let reflected = layouts.reflection.as_ref().map(|layout| reflection::upload(gpu, environment, layout));
+        let (view, view_bindings) = view_buffer(device, &layouts.view);
+        Ok(Self {
+            light: sh_math::project(bands, environment.samples()),
+            lit_for: None,
+            near: view::near_plane(&prt.geometry.positions),
+            view,
+            view_bindings,
+            surfaces: Surfaces::new(gpu, prt, &layouts, reflected.transpose()?, relight.lit().clone(), format)?,
+            sky: Sky::new(gpu, environment, &layouts.view, format)?,
+            finish: Finish::new(gpu),
+            relight,
+            targets: None,
+            format,
+            gpu: gpu.clone(),
+        })
     }
 
     /// Draws one picture and reads it back.
@@ -24,15 +91,91 @@ impl Renderer {
     /// # Errors
     /// [`Error::Invalid`] for a frame that makes no sense, [`Error::TooLarge`] for one beyond the GPU's limits.
     pub fn draw(&mut self, frame: &Frame) -> Result<Image, Error> {
-        frame.validate()?;
-        self.gpu.wait()?;
-        let pixels = frame.width as usize * frame.height as usize;
-        Ok(Image {
-            width: frame.width,
-            height: frame.height,
-            linear: vec![[0.0; 3]; pixels],
-            display: vec![[0, 0, 0, 255]; pixels],
+        frame.check()?;
+        let gpu = self.gpu.clone();
+        gpu.guarded("drawing", || {
+            let mut encoder = self.record(frame)?;
+            let targets = self.targets.as_ref().ok_or_else(|| Error::invalid("the frame", "nothing was drawn"))?;
+            let linear = Readback::record(&gpu, &mut encoder, &targets.linear, 16)?;
+            let display = Readback::record(&gpu, &mut encoder, &targets.display, 4)?;
+            gpu.queue.submit([encoder.finish()]);
+            Ok(Image {
+                width: frame.width,
+                height: frame.height,
+                linear: linear.read(&gpu, |&[r, g, b, _]: &[f32; 4]| [r, g, b])?,
+                display: display.read(&gpu, |&texel: &[u8; 4]| texel)?,
+            })
         })
+    }
+
+    /// Draws one picture, reads nothing back and says how long it took. The first frame builds what later ones reuse.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn time(&mut self, frame: &Frame) -> Result<Timings, Error> {
+        frame.check()?;
+        let gpu = self.gpu.clone();
+        gpu.guarded("drawing", || {
+            let start = Instant::now();
+            let relit = self.lit_for != Some(frame.rotation);
+            let encoder = self.record(frame)?;
+            gpu.queue.submit([encoder.finish()]);
+            let record = start.elapsed();
+            gpu.wait()?;
+            Ok(Timings { relit, record, frame: start.elapsed() })
+        })
+    }
+
+    /// Number of surface pipelines, one for each kind of material in use.
+    #[must_use]
+    pub fn pipelines(&self) -> usize {
+        self.surfaces.pipelines()
+    }
+
+    /// Records all passes of a frame into the targets, which it creates where their size has changed.
+    fn record(&mut self, frame: &Frame) -> Result<wgpu::CommandEncoder, Error> {
+        let gpu = self.gpu.clone();
+        let size = Size::of(frame);
+        let targets = match self.targets.take() {
+            Some(targets) if targets.size == size => targets,
+            _ => Targets::new(&gpu, size, self.format)?,
+        };
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if self.lit_for != Some(frame.rotation) {
+            self.relight.record(&gpu, &mut encoder, &self.light.rotated(frame.rotation.normalize()));
+            self.lit_for = Some(frame.rotation);
+        }
+        let largest = if self.format == picture::LINEAR { f32::MAX } else { LARGEST_HALF };
+        let view = view::view(frame, self.near, largest);
+        gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
+        self.record_scene(&mut encoder, &targets, &view, frame.sky);
+        self.finish.record(&gpu, &mut encoder, &targets, frame)?;
+        self.targets = Some(targets);
+        Ok(encoder)
+    }
+
+    fn record_scene(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &gpu_data::View, sky: bool) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("scene"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &targets.samples,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &targets.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.view_bindings, &[]);
+        self.surfaces.draw_opaque(&mut pass);
+        if sky {
+            self.sky.draw(&mut pass);
+        }
+        self.surfaces.draw_blended(&self.gpu, &mut pass, view);
     }
 }
 
@@ -40,11 +183,42 @@ impl Renderer {
 ///
 /// # Errors
 /// As those two.
-pub fn render(
-    gpu: &Gpu,
-    prt: &Prt,
-    environment: &Environment,
-    frame: &Frame,
-) -> Result<Image, Error> {
+pub fn render(gpu: &Gpu, prt: &Prt, environment: &Environment, frame: &Frame) -> Result<Image, Error> {
     Renderer::new(gpu, prt, environment)?.draw(frame)
+}
+
+/// 32-bit floats, but for scenes that blend on adapters that cannot blend those.
+fn sample_format(gpu: &Gpu, prt: &Prt) -> wgpu::TextureFormat {
+    if gpu.blends_float32 || !surface::blends(prt) { picture::LINEAR } else { wgpu::TextureFormat::Rgba16Float }
+}
+
+fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("view"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: wgpu::BufferSize::new(size_of::<gpu_data::View>() as u64),
+            },
+            count: None,
+        }],
+    })
+}
+
+fn view_buffer(device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> (wgpu::Buffer, wgpu::BindGroup) {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("view"),
+        size: size_of::<gpu_data::View>() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("view"),
+        layout,
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+    });
+    (buffer, bindings)
 }

@@ -1,0 +1,143 @@
+//! Materials on the GPU: numbers, textures, and which pipeline they call for.
+
+use crate::texture::{Encoding, Textures};
+use crate::{Error, Gpu, geometry, gpu_data};
+use coeff_io::{AlphaMode, Material, Prt, TextureSlot};
+
+/// What a pipeline is specialised for: materials with the same variant share it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Variant {
+    /// Mirrors the light probe.
+    pub(crate) shiny: bool,
+    /// Alpha below the cutoff is a hole.
+    pub(crate) masked: bool,
+    /// Alpha is coverage.
+    pub(crate) fades: bool,
+    /// Drawn over what lies behind.
+    pub(crate) blended: bool,
+    pub(crate) base_textured: bool,
+    pub(crate) metallic_roughness_textured: bool,
+    pub(crate) normal_textured: bool,
+    pub(crate) glow_textured: bool,
+}
+
+impl Variant {
+    /// What a material of a file with or without tangents calls for.
+    pub(crate) fn of(material: &Material, has_tangents: bool) -> Self {
+        let fades = material.alpha == AlphaMode::Blend;
+        Self {
+            shiny: material.specular,
+            masked: matches!(material.alpha, AlphaMode::Mask(_)),
+            fades,
+            blended: fades || material.transmission > 0.0,
+            base_textured: material.base_color_texture.is_some(),
+            metallic_roughness_textured: material.metallic_roughness_texture.is_some(),
+            normal_textured: material.specular && has_tangents && material.normal_texture.is_some(),
+            glow_textured: material.emissive_texture.is_some(),
+        }
+    }
+
+    /// The pipeline constants of surface.wgsl.
+    pub(crate) fn constants(self) -> [(&'static str, f64); 7] {
+        [
+            ("base_textured", self.base_textured),
+            ("metallic_roughness_textured", self.metallic_roughness_textured),
+            ("normal_textured", self.normal_textured),
+            ("glow_textured", self.glow_textured),
+            ("masked", self.masked),
+            ("blended", self.blended),
+            ("fades", self.fades),
+        ]
+        .map(|(name, on)| (name, f64::from(u8::from(on))))
+    }
+}
+
+/// One material, ready to be bound.
+#[derive(Debug)]
+pub(crate) struct BoundMaterial {
+    pub(crate) variant: Variant,
+    pub(crate) bindings: wgpu::BindGroup,
+}
+
+/// Uploads the materials and those textures that they show.
+pub(crate) fn upload(gpu: &Gpu, prt: &Prt, layout: &wgpu::BindGroupLayout) -> Result<Vec<BoundMaterial>, Error> {
+    let mut textures = Textures::new(gpu)?;
+    prt.materials.iter().map(|material| bind(gpu, prt, layout, &mut textures, material)).collect()
+}
+
+/// The layout of a material's bindings (group 1 of surface.wgsl).
+pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry =
+        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    let numbers = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: wgpu::BufferSize::new(size_of::<gpu_data::Material>() as u64),
+    };
+    let picture = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    let pictures = (1..5).map(|binding| entry(binding, picture));
+    let samplers = (5..9).map(|binding| entry(binding, sampler));
+    let entries = std::iter::once(entry(0, numbers)).chain(pictures).chain(samplers).collect::<Vec<_>>();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("material"), entries: &entries })
+}
+
+fn bind(
+    gpu: &Gpu,
+    prt: &Prt,
+    layout: &wgpu::BindGroupLayout,
+    textures: &mut Textures,
+    material: &Material,
+) -> Result<BoundMaterial, Error> {
+    let variant = Variant::of(material, !prt.geometry.tangents.is_empty());
+    let slots = [
+        (material.base_color_texture, Encoding::Srgb),
+        (material.metallic_roughness_texture, Encoding::Linear),
+        (material.normal_texture.filter(|_| variant.normal_textured), Encoding::Linear),
+        (material.emissive_texture, Encoding::Srgb),
+    ]
+    .map(|(slot, encoding)| (slot.map(|slot| slot.texture), encoding));
+    for (index, encoding) in slots {
+        index.map_or(Ok(()), |index| textures.require(gpu, prt, index, encoding))?;
+    }
+    let bytes = numbers(material);
+    let numbers = geometry::buffer(gpu, "material", bytemuck::bytes_of(&bytes), wgpu::BufferUsages::UNIFORM)?;
+    let pictures = slots.map(|(index, encoding)| textures.get(index, encoding));
+    let views = pictures.iter().map(|(view, _)| wgpu::BindingResource::TextureView(view));
+    let samplers = pictures.iter().map(|(_, sampler)| wgpu::BindingResource::Sampler(sampler));
+    let resources = std::iter::once(numbers.as_entire_binding()).chain(views).chain(samplers);
+    let entries = (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource });
+    let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(&material.name),
+        layout,
+        entries: &entries.collect::<Vec<_>>(),
+    });
+    Ok(BoundMaterial { variant, bindings })
+}
+
+fn numbers(material: &Material) -> gpu_data::Material {
+    gpu_data::Material {
+        base_color: material.base_color,
+        emissive: material.emissive,
+        metallic: material.metallic,
+        roughness: material.roughness,
+        normal_scale: material.normal_scale,
+        cutoff: if let AlphaMode::Mask(cutoff) = material.alpha { cutoff } else { 0.0 },
+        transmission: material.transmission,
+        base: slot(material.base_color_texture),
+        metallic_roughness: slot(material.metallic_roughness_texture),
+        normal: slot(material.normal_texture),
+        glow: slot(material.emissive_texture),
+    }
+}
+
+fn slot(slot: Option<TextureSlot>) -> gpu_data::Slot {
+    slot.map_or_else(gpu_data::Slot::default, |slot| {
+        let [[a, b, c], [d, e, f]] = slot.transform;
+        gpu_data::Slot { u: [a, b, c, f32::from(slot.uv_set)], v: [d, e, f, 0.0] }
+    })
+}

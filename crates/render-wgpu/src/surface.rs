@@ -1,0 +1,214 @@
+//! The surfaces of a scene: pipelines for what the file holds, and what to draw with them.
+
+use crate::geometry::{Attribute, Geometry};
+use crate::material::{self, BoundMaterial, Variant};
+use crate::{Error, Gpu, blend::Blended, gpu_data, shaders};
+use coeff_io::{Mesh, Prt};
+use std::{collections::HashMap, ops::Range};
+
+/// The depth buffer: reversed, near / w.
+pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// A run of triangles with one material.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Draw {
+    pub(crate) material: u32,
+    pub(crate) triangles: Range<u32>,
+}
+
+/// All surfaces, ready to be drawn.
+#[derive(Debug)]
+pub(crate) struct Surfaces {
+    geometry: Geometry,
+    materials: Vec<BoundMaterial>,
+    pipelines: HashMap<Variant, wgpu::RenderPipeline>,
+    reflection: Option<wgpu::BindGroup>,
+    opaque: Vec<Draw>,
+    blended: Option<Blended>,
+}
+
+/// The layouts of the groups that surfaces read.
+#[derive(Debug)]
+pub(crate) struct Layouts {
+    pub(crate) view: wgpu::BindGroupLayout,
+    pub(crate) material: wgpu::BindGroupLayout,
+    /// Only where something shines.
+    pub(crate) reflection: Option<wgpu::BindGroupLayout>,
+}
+
+impl Surfaces {
+    /// Uploads geometry, materials and textures; builds one pipeline per variant in use.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        prt: &Prt,
+        layouts: &Layouts,
+        reflection: Option<wgpu::BindGroup>,
+        lit: wgpu::Buffer,
+        format: wgpu::TextureFormat,
+    ) -> Result<Self, Error> {
+        let geometry = Geometry::new(gpu, prt, lit, reflection.is_some())?;
+        let materials = material::upload(gpu, prt, &layouts.material)?;
+        let draws = draws(&prt.meshes);
+        let mut pipelines = HashMap::new();
+        for draw in &draws {
+            let variant = materials[draw.material as usize].variant;
+            pipelines.entry(variant).or_insert_with(|| pipeline(gpu, layouts, &geometry, variant, format));
+        }
+        let is_blended = |draw: &Draw| materials[draw.material as usize].variant.blended;
+        let (behind, opaque) = draws.into_iter().partition::<Vec<_>, _>(is_blended);
+        let blended = Blended::new(gpu, prt, &behind)?;
+        Ok(Self { geometry, materials, pipelines, reflection, opaque, blended })
+    }
+
+    /// Number of pipelines that were built.
+    pub(crate) fn pipelines(&self) -> usize {
+        self.pipelines.len()
+    }
+
+    /// Draws opaque and masked surfaces in file order: of equal depths the first stays.
+    pub(crate) fn draw_opaque(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.draw(pass, &self.geometry.triangles, &self.opaque);
+    }
+
+    /// Draws blended surfaces, farthest first.
+    pub(crate) fn draw_blended(&self, gpu: &Gpu, pass: &mut wgpu::RenderPass<'_>, view: &gpu_data::View) {
+        if let Some(blended) = &self.blended {
+            self.draw(pass, &blended.indices, &blended.sort(gpu, view));
+        }
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, indices: &wgpu::Buffer, draws: &[Draw]) {
+        pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+        let mut last = None;
+        for draw in draws {
+            let material = &self.materials[draw.material as usize];
+            if last != Some(material.variant) {
+                self.set_variant(pass, material.variant);
+                last = Some(material.variant);
+            }
+            pass.set_bind_group(1, &material.bindings, &[]);
+            pass.draw_indexed(3 * draw.triangles.start..3 * draw.triangles.end, 0, 0..1);
+        }
+    }
+
+    fn set_variant(&self, pass: &mut wgpu::RenderPass<'_>, variant: Variant) {
+        pass.set_pipeline(&self.pipelines[&variant]);
+        for (slot, attribute) in (0..).zip(attributes(variant)) {
+            pass.set_vertex_buffer(slot, self.geometry.stream(attribute).buffer.slice(..));
+        }
+        if variant.shiny {
+            pass.set_bind_group(2, self.reflection.as_ref(), &[]);
+        }
+    }
+}
+
+/// Whether any triangle shows a material that mirrors the light probe.
+pub(crate) fn shines(prt: &Prt) -> bool {
+    draws(&prt.meshes).iter().any(|draw| prt.materials[draw.material as usize].specular)
+}
+
+/// Whether any triangle is drawn over what lies behind.
+pub(crate) fn blends(prt: &Prt) -> bool {
+    draws(&prt.meshes).iter().any(|draw| Variant::of(&prt.materials[draw.material as usize], false).blended)
+}
+
+/// The triangles of all meshes; neighbours of one material are drawn together.
+fn draws(meshes: &[Mesh]) -> Vec<Draw> {
+    let mut draws: Vec<Draw> = Vec::new();
+    for mesh in meshes.iter().filter(|mesh| mesh.triangles > 0) {
+        let end = mesh.first_triangle + mesh.triangles;
+        match draws.last_mut() {
+            Some(draw) if draw.material == mesh.material && draw.triangles.end == mesh.first_triangle => {
+                draw.triangles.end = end;
+            }
+            _ => draws.push(Draw { material: mesh.material, triangles: mesh.first_triangle..end }),
+        }
+    }
+    draws
+}
+
+fn attributes(variant: Variant) -> impl Iterator<Item = Attribute> {
+    let more: &[Attribute] = if variant.shiny { &Attribute::SHINY } else { &[] };
+    Attribute::DIFFUSE.into_iter().chain(more.iter().copied())
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    layouts: &Layouts,
+    geometry: &Geometry,
+    variant: Variant,
+    format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
+    let shader = if variant.shiny { shaders::SHINY } else { shaders::DIFFUSE };
+    let (vertex_entry, fragment_entry) =
+        if variant.shiny { ("place_shiny", "draw_shiny") } else { ("place_diffuse", "draw_diffuse") };
+    let module = shader.module(&gpu.device);
+    let reflection = layouts.reflection.as_ref().filter(|_| variant.shiny);
+    let groups = [Some(&layouts.view), Some(&layouts.material), reflection];
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(shader.name),
+        bind_group_layouts: if variant.shiny { &groups } else { &groups[..2] },
+        immediate_size: 0,
+    });
+    let inputs = attributes(variant).map(|attribute| Input::new(geometry, attribute)).collect::<Vec<_>>();
+    let buffers = inputs.iter().map(|input| Some(input.layout())).collect::<Vec<_>>();
+    let constants = variant.constants();
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(shader.name),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(vertex_entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &buffers,
+        },
+        primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
+        depth_stencil: Some(depth_state(!variant.blended, wgpu::CompareFunction::Greater)),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(fragment_entry),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            targets: &[Some(wgpu::ColorTargetState {
+                format,
+                blend: variant.blended.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// A depth test against the reversed buffer.
+pub(crate) fn depth_state(write: bool, compare: wgpu::CompareFunction) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(write),
+        depth_compare: Some(compare),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+/// One vertex buffer with one attribute.
+struct Input {
+    step: wgpu::VertexStepMode,
+    attribute: [wgpu::VertexAttribute; 1],
+}
+
+impl Input {
+    fn new(geometry: &Geometry, attribute: Attribute) -> Self {
+        let format = attribute.format();
+        let attribute_description = wgpu::VertexAttribute { format, offset: 0, shader_location: attribute as u32 };
+        Self { step: geometry.stream(attribute).step, attribute: [attribute_description] }
+    }
+
+    fn layout(&self) -> wgpu::VertexBufferLayout<'_> {
+        wgpu::VertexBufferLayout {
+            array_stride: self.attribute[0].format.size(),
+            step_mode: self.step,
+            attributes: &self.attribute,
+        }
+    }
+}
