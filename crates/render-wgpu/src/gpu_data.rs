@@ -76,3 +76,76 @@ pub(crate) struct Post {
     pub(crate) bloom: f32,
     pub(crate) levels: f32,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shaders;
+
+    /// Names with offsets of a structure, and its size.
+    type Layout = (Vec<(String, u32)>, u32);
+
+    macro_rules! rust_layout {
+        ($structure:ty, $($field:ident),+) => {(
+            vec![$((stringify!($field).to_owned(), std::mem::offset_of!($structure, $field) as u32)),+],
+            size_of::<$structure>() as u32,
+        )};
+    }
+
+    fn wgsl_layout(shader: shaders::Shader, name: &str) -> Layout {
+        let module = naga::front::wgsl::parse_str(shader.text).expect("valid WGSL");
+        let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
+        let (_, ty) = found.unwrap_or_else(|| panic!("{name} stands in {}", shader.name));
+        let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is a structure") };
+        let members = members.iter().map(|member| (member.name.clone().unwrap_or_default(), member.offset));
+        (members.collect(), *span)
+    }
+
+    fn view_layout() -> Layout {
+        rust_layout!(View, eye, near, forward, largest, right, up, clip_x, clip_y, light_from_world)
+    }
+
+    #[test]
+    fn structures_lie_in_memory_as_the_shaders_read_them() {
+        let material = rust_layout!(
+            Material,
+            base_color,
+            emissive,
+            metallic,
+            roughness,
+            normal_scale,
+            cutoff,
+            transmission,
+            base,
+            metallic_roughness,
+            normal,
+            glow
+        );
+        for shader in [shaders::DIFFUSE, shaders::SHINY] {
+            assert_eq!(wgsl_layout(shader, "View"), view_layout(), "View in {}", shader.name);
+            assert_eq!(wgsl_layout(shader, "Material"), material, "Material in {}", shader.name);
+        }
+        assert_eq!(wgsl_layout(shaders::SKY, "View"), view_layout(), "View in sky");
+        assert_eq!(wgsl_layout(shaders::SHINY, "Slot"), rust_layout!(Slot, u, v), "Slot");
+        assert_eq!(wgsl_layout(shaders::RELIGHT, "Chunk"), rust_layout!(Chunk, vertices, coefficients), "Chunk");
+        let lamp = rust_layout!(Lamp, direction, chord_squared, radiance);
+        assert_eq!(wgsl_layout(shaders::SKY, "Lamp"), lamp, "Lamp");
+        let post = rust_layout!(Post, exposure, supersample, bloom, levels);
+        for shader in [shaders::RESOLVE, shaders::BLOOM] {
+            assert_eq!(wgsl_layout(shader, "Post"), post, "Post in {}", shader.name);
+        }
+    }
+
+    #[test]
+    fn layouts_can_fail() {
+        #[repr(C)]
+        struct Unpadded {
+            eye: [f32; 3],
+            near: f32,
+            forward: [f32; 3],
+            right: [f32; 3],
+        }
+        let unpadded: Layout = rust_layout!(Unpadded, eye, near, forward, right);
+        assert_ne!(wgsl_layout(shaders::SKY, "View"), unpadded, "a structure without its padding must be noticed");
+    }
+}

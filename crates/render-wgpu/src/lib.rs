@@ -25,6 +25,8 @@ mod sky;
 mod surface;
 mod targets;
 mod texture;
+#[cfg(test)]
+mod twin;
 mod view;
 
 pub use error::Error;

@@ -45,16 +45,36 @@ impl Readback {
         gpu: &Gpu,
         convert: impl Fn(&T) -> U,
     ) -> Result<Vec<U>, Error> {
-        let failed = |reason: String| Error::Gpu { doing: "reading a picture back", reason };
-        let (sender, receiver) = std::sync::mpsc::channel();
-        // The receiver outlives the wait below, so a failed send cannot matter.
-        self.buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
-        gpu.wait()?;
-        let mapped = receiver.recv().map_err(|error| failed(error.to_string()))?;
-        mapped.map_err(|error| failed(error.to_string()))?;
-        let bytes = self.buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))?;
+        let bytes = map(gpu, &self.buffer)?;
         let rows = bytes.chunks_exact(self.padded_row_bytes);
         let texels = rows.flat_map(|row| bytemuck::cast_slice::<u8, T>(&row[..self.row_bytes]));
         Ok(texels.map(convert).collect())
     }
+}
+
+/// Waits until the device is done and shows the bytes of a mappable buffer.
+fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, Error> {
+    let failed = |reason: String| Error::Gpu { doing: "reading back", reason };
+    let (sender, receiver) = std::sync::mpsc::channel();
+    // The receiver outlives the wait below, so a failed send cannot matter.
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
+    gpu.wait()?;
+    let mapped = receiver.recv().map_err(|error| failed(error.to_string()))?;
+    mapped.map_err(|error| failed(error.to_string()))?;
+    buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))
+}
+
+/// Copies a whole buffer back, for tests of what shaders write.
+#[cfg(test)]
+pub(crate) fn buffer<T: bytemuck::AnyBitPattern>(gpu: &Gpu, source: &wgpu::Buffer) -> Result<Vec<T>, Error> {
+    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: source.size(),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(source, 0, &copy, 0, source.size());
+    gpu.queue.submit([encoder.finish()]);
+    Ok(bytemuck::cast_slice(&map(gpu, &copy)?).to_vec())
 }

@@ -73,7 +73,7 @@ impl Renderer {
         Ok(Self {
             light: sh_math::project(bands, environment.samples()),
             lit_for: None,
-            near: view::near_plane(&prt.geometry.positions),
+            near: view::near_plane(prt),
             view,
             view_bindings,
             surfaces: Surfaces::new(gpu, prt, &layouts, reflected.transpose()?, relight.lit().clone(), format)?,

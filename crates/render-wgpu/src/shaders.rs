@@ -42,3 +42,46 @@ impl Shader {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Parses and validates WGSL without a GPU.
+    fn validate(text: &str) -> Result<(), String> {
+        let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
+        let flags = naga::valid::ValidationFlags::all();
+        naga::valid::Validator::new(flags, naga::valid::Capabilities::default())
+            .validate(&module)
+            .map(drop)
+            .map_err(|error| error.emit_to_string(text))
+    }
+
+    #[test]
+    fn every_module_is_valid() {
+        for shader in ALL {
+            assert_eq!(validate(shader.text), Ok(()), "{} must be valid WGSL", shader.name);
+        }
+    }
+
+    #[test]
+    fn validation_can_fail() {
+        for shader in ALL {
+            let broken = shader.text.replace("vec2<i32>(at.clip.xy)", "vec2<i32>(at.clip.x)");
+            let broken = broken.replace(": u32,", ": u32").replace("-> @location(0) vec4<f32>", "-> vec4<f32>");
+            assert!(validate(&broken).is_err(), "{} with wrong types must be refused", shader.name);
+        }
+    }
+
+    /// A file that no module holds would never be checked.
+    #[test]
+    fn every_file_is_part_of_a_module() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders");
+        for entry in std::fs::read_dir(folder).expect("the shaders stand beside src") {
+            let path = entry.expect("a readable entry").path();
+            let text = std::fs::read_to_string(&path).expect("a readable shader");
+            let used = ALL.iter().any(|shader| shader.text.contains(&text));
+            assert!(used, "{} belongs to a module", path.display());
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Pictures of the GPU are those of the CPU renderer, and closed forms where there are any.
+//!
+//! Here render-cpu is a development dependency: the two renderers never see each other outside of tests.
+
+mod handmade;
+
+use coeff_io::{AlphaMode, Camera, Prt};
+use handmade::{camera, environment, rotation, sphere_on_plane};
+use probe_io::Environment;
+use render_wgpu::{Driver, Error, Frame, Gpu, Image, Renderer, Tonemap};
+use std::process::Command;
+
+/// A software device; None, with a line that says so, where there is none and none is required.
+fn gpu() -> Option<Gpu> {
+    match Gpu::new(Driver::Software) {
+        Ok(gpu) => Some(gpu),
+        Err(error) if std::env::var_os("RELUME_REQUIRE_GPU").is_some_and(|value| value == "1") => {
+            panic!("RELUME_REQUIRE_GPU=1 but {error}")
+        }
+        Err(_) => {
+            say_skipped();
+            None
+        }
+    }
+}
+
+#[expect(clippy::print_stderr, reason = "a skipped test must be seen in the test log")]
+fn say_skipped() {
+    eprintln!("skipped: no adapter");
+}
+
+/// A pixel is far when a display channel differs by more than this many steps of 255: texture filters of GPUs
+/// weigh texels in steps of 1/256.
+const FAR: u8 = 2;
+/// Share of far pixels: outlines and edges of masks may fall on the other side of a sample by rounding.
+const FAR_SHARE: f64 = 0.003;
+/// Mean difference of linear values over the mean value, far pixels included.
+const MEAN_TOLERANCE: f64 = 2e-3;
+
+/// How far apart two pictures are.
+#[derive(Debug)]
+struct Distance {
+    far_share: f64,
+    mean: f64,
+}
+
+impl Distance {
+    fn is_small(&self) -> bool {
+        self.far_share <= FAR_SHARE && self.mean <= MEAN_TOLERANCE
+    }
+}
+
+fn distance(gpu: &Image, cpu: &render_cpu::Image) -> Distance {
+    let pixels = cpu.display.len();
+    assert_eq!((gpu.linear.len(), gpu.display.len()), (pixels, pixels), "pictures of one size");
+    let is_far = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > FAR);
+    let far = gpu.display.iter().zip(&cpu.display).filter(is_far).count();
+    let sum = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>();
+    let (ours, theirs) = (gpu.linear.as_flattened(), cpu.linear.as_flattened());
+    let difference = sum(&mut ours.iter().zip(theirs).map(|(a, b)| f64::from((a - b).abs())));
+    let total = sum(&mut theirs.iter().map(|&b| f64::from(b)));
+    Distance { far_share: far as f64 / pixels as f64, mean: difference / total }
+}
+
+fn cpu_frame(frame: &Frame) -> render_cpu::Frame {
+    render_cpu::Frame {
+        camera: frame.camera.clone(),
+        width: frame.width,
+        height: frame.height,
+        rotation: frame.rotation,
+        exposure_ev: frame.exposure_ev,
+        tonemap: match frame.tonemap {
+            Tonemap::None => render_cpu::Tonemap::None,
+            Tonemap::Reinhard => render_cpu::Tonemap::Reinhard,
+            Tonemap::Filmic => render_cpu::Tonemap::Filmic,
+        },
+        bloom: frame.bloom,
+        supersample: frame.supersample,
+        sky: frame.sky,
+    }
+}
+
+fn cpu_picture(prt: &Prt, environment: &Environment, frame: &Frame) -> render_cpu::Image {
+    render_cpu::render(prt, environment, &cpu_frame(frame)).expect("a sound scene and frame")
+}
+
+/// Frames that each show something else, with names.
+fn frames() -> Vec<(&'static str, Frame)> {
+    let plain = Frame::plain(camera(), 192, 128);
+    let from_below = Camera { eye: [-2.0, -0.6, 2.5], up: [0.3, 1.0, 0.1], ..camera() };
+    let along_up = Camera { eye: [0.2, 5.0, 0.1], target: [0.2, 0.0, 0.1], ..camera() };
+    vec![
+        ("plain", plain.clone()),
+        ("supersampled", Frame { supersample: 3, ..plain.clone() }),
+        ("turned light", Frame { rotation: rotation(), tonemap: Tonemap::Reinhard, ..plain.clone() }),
+        ("bloom", Frame { bloom: 0.3, exposure_ev: 1.5, tonemap: Tonemap::Filmic, ..plain.clone() }),
+        ("bloom of odd sizes", Frame { bloom: 0.8, width: 131, height: 67, ..plain.clone() }),
+        ("no sky", Frame { sky: false, exposure_ev: -1.0, ..plain.clone() }),
+        ("from below", Frame { camera: from_below, ..plain.clone() }),
+        ("along up", Frame { camera: along_up, ..plain }),
+    ]
+}
+
+#[test]
+fn pictures_agree_with_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let environment = environment();
+    for channels in [1, 3] {
+        let prt = sphere_on_plane(channels, 24);
+        let mut renderer = Renderer::new(&gpu, &prt, &environment).expect("a sound scene");
+        for (name, frame) in frames() {
+            let picture = renderer.draw(&frame).expect("a sound frame");
+            let distance = distance(&picture, &cpu_picture(&prt, &environment, &frame));
+            assert!(distance.is_small(), "{name} with {channels} channels: {distance:?}");
+        }
+    }
+}
+
+#[test]
+fn pictures_can_fail() {
+    let Some(gpu) = gpu() else { return };
+    let (environment, frame) = (environment(), Frame::plain(camera(), 192, 128));
+    let prt = sphere_on_plane(1, 24);
+    let expected = cpu_picture(&prt, &environment, &frame);
+    let draw = |prt: &Prt, frame: &Frame| render_wgpu::render(&gpu, prt, &environment, frame).expect("a picture");
+    let no_bumps = {
+        let mut prt = prt.clone();
+        prt.materials[1].normal_texture = None;
+        draw(&prt, &frame)
+    };
+    let no_holes = {
+        let mut prt = prt.clone();
+        prt.materials[2].alpha = AlphaMode::Opaque;
+        draw(&prt, &frame)
+    };
+    let brighter = draw(&prt, &Frame { exposure_ev: 0.05, ..frame.clone() });
+    let turned = draw(&prt, &Frame { rotation: rotation(), ..frame });
+    for (name, picture) in [("no bumps", no_bumps), ("no holes", no_holes), ("brighter", brighter), ("turned", turned)] {
+        let distance = distance(&picture, &expected);
+        assert!(!distance.is_small(), "{name} must be noticed: {distance:?}");
+    }
+}
+
+#[test]
+fn attributes_that_a_file_lacks_read_as_the_model_says() {
+    let Some(gpu) = gpu() else { return };
+    let (environment, frame) = (environment(), Frame::plain(camera(), 96, 64));
+    let mut prt = sphere_on_plane(1, 24);
+    prt.geometry.tangents.clear();
+    prt.geometry.uv0.clear();
+    prt.geometry.uv1.clear();
+    prt.geometry.colors.clear();
+    prt.transfer.openness.clear();
+    let picture = render_wgpu::render(&gpu, &prt, &environment, &frame).expect("a picture");
+    let distance = distance(&picture, &cpu_picture(&prt, &environment, &frame));
+    assert!(distance.is_small(), "{distance:?}");
+}
+
+/// A diffuse scene with the transfer of open receivers under white light.
+fn furnace() -> Prt {
+    let mut prt = sphere_on_plane(1, 8);
+    let material = coeff_io::Material { base_color: [0.25, 0.5, 0.75, 1.0], ..handmade::white() };
+    prt.materials.iter_mut().for_each(|m| *m = material.clone());
+    prt.geometry.colors.clear();
+    prt.transfer.values.chunks_exact_mut(16).for_each(|row| {
+        row.fill(0.0);
+        // Y00 times the light's only coefficient, sqrt(4 pi), is 1.
+        row[0] = 0.282_094_8;
+    });
+    prt
+}
+
+#[test]
+fn an_open_scene_under_white_light_shows_its_albedo() {
+    let Some(gpu) = gpu() else { return };
+    let frame = Frame { sky: false, ..Frame::plain(camera(), 64, 64) };
+    let picture = render_wgpu::render(&gpu, &furnace(), &Environment::constant([1.0; 3]), &frame).expect("a picture");
+    let centre = picture.linear[32 * 64 + 32];
+    for (seen, albedo) in centre.into_iter().zip([0.25f32, 0.5, 0.75]) {
+        testkit::assert_close!(seen, albedo, 1e-5, 0.0);
+    }
+    assert!(picture.display.iter().all(|texel| texel[3] == 255), "the picture is opaque");
+    assert!(picture.linear.contains(&[0.0; 3]), "black where nothing is");
+}
+
+#[test]
+fn a_black_light_can_fail_the_furnace() {
+    let Some(gpu) = gpu() else { return };
+    let frame = Frame::plain(camera(), 16, 16);
+    let picture = render_wgpu::render(&gpu, &furnace(), &Environment::constant([0.0; 3]), &frame).expect("a picture");
+    assert!(picture.linear.iter().all(|pixel| *pixel == [0.0; 3]), "no light, no picture");
+}
+
+#[test]
+fn a_scene_builds_only_the_pipelines_that_it_calls_for() {
+    let Some(gpu) = gpu() else { return };
+    let light = Environment::constant([1.0; 3]);
+    let pipelines = |prt: &Prt| Renderer::new(&gpu, prt, &light).expect("a sound scene").pipelines();
+    assert_eq!(pipelines(&furnace()), 1, "one kind of material");
+    assert_eq!(pipelines(&sphere_on_plane(1, 8)), 6, "six kinds of material");
+}
+
+#[test]
+fn frames_of_one_scene_are_the_same_again() {
+    let Some(gpu) = gpu() else { return };
+    let (environment, prt) = (environment(), sphere_on_plane(3, 12));
+    let mut renderer = Renderer::new(&gpu, &prt, &environment).expect("a sound scene");
+    let frame = Frame { bloom: 0.2, ..Frame::plain(camera(), 80, 50) };
+    let first = renderer.draw(&frame).expect("a picture");
+    let other = renderer.draw(&Frame { rotation: rotation(), width: 64, ..frame.clone() }).expect("a picture");
+    assert_ne!(first.linear, other.linear, "another light gives another picture");
+    assert!(first == renderer.draw(&frame).expect("a picture"), "the first picture again");
+    assert!(!renderer.time(&frame).expect("a frame").relit, "the light has not turned");
+    assert!(renderer.time(&Frame { rotation: rotation(), ..frame }).expect("a frame").relit, "the light has turned");
+}
+
+#[test]
+fn frames_that_make_no_sense_are_refused() {
+    let Some(gpu) = gpu() else { return };
+    let mut renderer = Renderer::new(&gpu, &furnace(), &Environment::constant([1.0; 3])).expect("a sound scene");
+    let plain = Frame::plain(camera(), 8, 8);
+    let broken = [
+        Frame { width: 0, ..plain.clone() },
+        Frame { supersample: 9, ..plain.clone() },
+        Frame { bloom: f32::NAN, ..plain.clone() },
+        Frame { exposure_ev: f32::INFINITY, ..plain.clone() },
+        Frame { rotation: glam::Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..plain.clone() },
+        Frame { camera: Camera { target: camera().eye, ..camera() }, ..plain.clone() },
+    ];
+    for frame in broken {
+        let refused = renderer.draw(&frame).expect_err("a broken frame");
+        assert!(matches!(refused, Error::Invalid { .. }), "{refused}");
+    }
+    let huge = Frame { width: 16384, supersample: 8, ..plain };
+    let refused = renderer.draw(&huge).expect_err("no GPU has textures of 131072 texels");
+    assert!(refused.to_string().contains("131072"), "{refused}");
+}
+
+#[test]
+fn scenes_that_contradict_themselves_are_refused() {
+    let Some(gpu) = gpu() else { return };
+    let light = Environment::constant([1.0; 3]);
+    let breaks: [fn(&mut Prt); 5] = [
+        |prt| prt.geometry.triangles[0][1] = u32::MAX,
+        |prt| prt.transfer.values.truncate(7),
+        |prt| prt.meshes[0].material = 99,
+        |prt| prt.geometry.normals.clear(),
+        |prt| prt.textures[0].rgba.truncate(1),
+    ];
+    for change in breaks {
+        let mut prt = furnace();
+        change(&mut prt);
+        let refused = Renderer::new(&gpu, &prt, &light).expect_err("a broken scene");
+        assert!(matches!(refused, Error::Invalid { .. }), "{refused}");
+    }
+}
+
+/// Set in the process that is to find no driver.
+const CHILD: &str = "RELUME_TEST_WITHOUT_DRIVER";
+
+#[test]
+fn without_a_driver_the_error_says_what_to_do() {
+    if std::env::var_os(CHILD).is_some() {
+        let error = Gpu::new(Driver::Any).expect_err("the driver is hidden");
+        panic!("{error}");
+    }
+    let test = std::env::current_exe().expect("this test");
+    let mut child = Command::new(test);
+    child.args(["--exact", "without_a_driver_the_error_says_what_to_do"]).env(CHILD, "1");
+    // Vulkan alone, and no file that names a driver.
+    child.env("WGPU_BACKEND", "vulkan").env("VK_DRIVER_FILES", "/nonexistent").env("VK_ICD_FILENAMES", "/nonexistent");
+    let output = child.output().expect("a child process");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("no GPU adapter was found"), "{said}");
+    assert!(said.contains("apt install mesa-vulkan-drivers"), "{said}");
+}
