@@ -1,11 +1,11 @@
 //! Direct light against form factors, lamps against their irradiance, pictures against sums over their pixels.
 
-mod scatter;
+mod ground;
 
 use glam::{DVec3, Vec3};
+use ground::ground;
 use probe_io::{Environment, Lamp};
 use reference::{Estimate, Light, Receiver, Settings, World, radiance_at};
-use scatter::ground;
 use scene::{Scene, builtin, known};
 use std::f64::consts::{PI, TAU};
 use testkit::ttest;

@@ -1,6 +1,6 @@
 //! A sun of a hundred thousand times the sky in one pixel costs no fireflies.
 
-mod scatter;
+mod ground;
 
 use glam::Vec3Swizzles;
 use probe_io::{Environment, Layout, Probe};
@@ -29,7 +29,7 @@ fn sunny(layout: Layout) -> Environment {
 
 /// Exact irradiance over pi on the ground from sums over small parts of the pixels.
 fn truth(environment: &Environment) -> f64 {
-    const N: usize = 2048;
+    const N: usize = 1024;
     let mut sum = 0.0;
     for y in 0..N / 2 {
         let theta = PI * (y as f64 + 0.5) / N as f64;
@@ -44,16 +44,16 @@ fn truth(environment: &Environment) -> f64 {
 }
 
 /// Root mean square error of `SAMPLES` paths, relative to the truth.
-fn importance_error(environment: &Environment) -> f64 {
+fn importance_error(environment: &Environment, truth: f64) -> f64 {
     let scene = builtin("plane").expect("a built-in scene");
-    let receivers = vec![scatter::ground(0.0, 0.0, 1.0); REPLICATES as usize];
+    let receivers = vec![ground::ground(0.0, 0.0, 1.0); REPLICATES as usize];
     let settings = Settings { samples: SAMPLES, seed: 1, max_bounces: None };
     let estimates = radiance_at(&World::new(&scene), &Light::new(environment), &receivers, &settings);
-    relative_error(estimates.iter().map(|e| f64::from(e.mean[0])), truth(environment))
+    relative_error(estimates.iter().map(|e| f64::from(e.mean[0])), truth)
 }
 
 /// The same with directions uniform over the hemisphere.
-fn uniform_error(environment: &Environment) -> f64 {
+fn uniform_error(environment: &Environment, truth: f64) -> f64 {
     let mean = |seed| {
         let mut rng = Rng::new(seed, 77);
         let mut value = || {
@@ -62,7 +62,7 @@ fn uniform_error(environment: &Environment) -> f64 {
         };
         (0..SAMPLES).map(|_| value()).sum::<f64>() / f64::from(SAMPLES)
     };
-    relative_error((0..REPLICATES).map(mean), truth(environment))
+    relative_error((0..REPLICATES).map(mean), truth)
 }
 
 fn relative_error(values: impl Iterator<Item = f64>, truth: f64) -> f64 {
@@ -71,16 +71,20 @@ fn relative_error(values: impl Iterator<Item = f64>, truth: f64) -> f64 {
 
 #[test]
 fn importance_sampling_tames_the_sun() {
-    for layout in [Layout::Equirect, Layout::Angular, Layout::Faces] {
+    // A pixel of a panorama is a cell of the table: only the share of the sky is spread. In other layouts the sun
+    // shares its cells with the sky, so that as few as a quarter of the paths may find it: sqrt(3 / 256).
+    for (layout, bound) in [(Layout::Equirect, 0.02), (Layout::Angular, 0.11), (Layout::Faces, 0.11)] {
         let environment = sunny(layout);
-        let (importance, uniform) = (importance_error(&environment), uniform_error(&environment));
+        let truth = truth(&environment);
+        let (importance, uniform) = (importance_error(&environment, truth), uniform_error(&environment, truth));
         assert!(importance < 0.1 * uniform, "{layout:?}: {importance:.4} against {uniform:.4}");
-        assert!(importance < 0.05, "{layout:?}: {importance:.4} of the truth");
+        assert!(importance < bound, "{layout:?}: {importance:.4} of the truth");
     }
 }
 
 #[test]
 fn uniform_sampling_can_fail() {
-    let error = uniform_error(&sunny(Layout::Equirect));
+    let environment = sunny(Layout::Equirect);
+    let error = uniform_error(&environment, truth(&environment));
     assert!(error > 0.5, "a uniform sampler must suffer from this sun: {error:.4}");
 }

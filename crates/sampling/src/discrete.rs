@@ -5,6 +5,9 @@
 pub struct Table1d {
     /// `cumulative[i]` is the sum of the weights before `i`; one longer than the list.
     cumulative: Vec<f64>,
+    /// The entry at each share `k / n` of the total, k = 0..=n: the search starts between two of them, so it takes the
+    /// same few steps for any n (Chen and Asau 1974).
+    guide: Vec<u32>,
 }
 
 /// One entry of a [`Table1d`].
@@ -33,16 +36,16 @@ impl Table1d {
             sum += weight;
             sum
         }));
-        (sum > 0.0).then_some(Self { cumulative })
+        (sum > 0.0).then(|| {
+            let guide = guide(&cumulative, sum);
+            Self { cumulative, guide }
+        })
     }
 
     /// Sum of the weights.
     #[must_use]
     pub fn total(&self) -> f64 {
-        *self
-            .cumulative
-            .last()
-            .expect("a table holds at least the zero it starts with")
+        *self.cumulative.last().expect("a table holds at least the zero it starts with")
     }
 
     /// The entry at the share `u` in `[0, 1)` of the total; an entry of weight 0 is never chosen.
@@ -51,14 +54,22 @@ impl Table1d {
         let total = self.total();
         // Rounding may lift u * total to the total itself, where a weight of 0 could lie.
         let target = (u * total).min(total.next_down()).max(0.0);
-        let index = self.cumulative.partition_point(|&c| c <= target) - 1;
+        let index = self.find(u, target);
         let weight = self.weight(index);
         let remapped = ((target - self.cumulative[index]) / weight).clamp(0.0, 1.0_f64.next_down());
-        Choice {
-            index,
-            remapped,
-            probability: weight / total,
+        Choice { index, remapped, probability: weight / total }
+    }
+
+    /// The entry with `cumulative[i] <= target < cumulative[i + 1]`.
+    fn find(&self, u: f64, target: f64) -> usize {
+        let n = self.guide.len() - 1;
+        let k = ((u * n as f64) as usize).min(n - 1);
+        let (first, last) = (self.guide[k] as usize, self.guide[k + 1] as usize);
+        // Rounding of u * n can put a target just outside its pair of guides.
+        if self.cumulative[first] <= target && target < self.cumulative[last + 1] {
+            return first + self.cumulative[first + 1..=last].partition_point(|&c| c <= target);
         }
+        self.cumulative.partition_point(|&c| c <= target) - 1
     }
 
     /// Probability of an entry.
@@ -71,6 +82,21 @@ impl Table1d {
     fn weight(&self, index: usize) -> f64 {
         self.cumulative[index + 1] - self.cumulative[index]
     }
+}
+
+/// Entries at equal steps of the total, in one pass.
+fn guide(cumulative: &[f64], total: f64) -> Vec<u32> {
+    let n = cumulative.len() - 1;
+    let mut index = 0;
+    let step = |k: usize| {
+        let target = k as f64 / n as f64 * total;
+        // The last target is the total itself: stay on the last entry.
+        while index + 1 < n && cumulative[index + 1] <= target {
+            index += 1;
+        }
+        index as u32
+    };
+    (0..=n).map(step).collect()
 }
 
 /// A picture of weights prepared for sampling: a row first, then a column in it.
@@ -103,13 +129,8 @@ impl Table2d {
             return None;
         }
         let columns: Vec<_> = weights.chunks_exact(width).map(Table1d::new).collect();
-        let totals = columns
-            .iter()
-            .map(|row| row.as_ref().map_or(0.0, Table1d::total));
-        Some(Self {
-            rows: Table1d::from_sums(totals)?,
-            columns,
-        })
+        let totals = columns.iter().map(|row| row.as_ref().map_or(0.0, Table1d::total));
+        Some(Self { rows: Table1d::from_sums(totals)?, columns })
     }
 
     /// Sum of the weights.
@@ -122,9 +143,7 @@ impl Table2d {
     #[must_use]
     pub fn sample(&self, u: [f64; 2]) -> Cell {
         let row = self.rows.sample(u[1]);
-        let columns = self.columns[row.index]
-            .as_ref()
-            .expect("a row that can be chosen has a weight");
+        let columns = self.columns[row.index].as_ref().expect("a row that can be chosen has a weight");
         let column = columns.sample(u[0]);
         Cell {
             position: [column.index, row.index],
@@ -136,8 +155,6 @@ impl Table2d {
     /// Probability of a cell by column and row.
     #[must_use]
     pub fn probability(&self, [column, row]: [usize; 2]) -> f64 {
-        self.columns[row].as_ref().map_or(0.0, |columns| {
-            self.rows.probability(row) * columns.probability(column)
-        })
+        self.columns[row].as_ref().map_or(0.0, |columns| self.rows.probability(row) * columns.probability(column))
     }
 }

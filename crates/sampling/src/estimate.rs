@@ -47,34 +47,22 @@ impl Doubling {
     /// State before the first look.
     #[must_use]
     pub fn start(&self) -> Progress {
-        Progress {
-            previous: Vec::new(),
-            passed: 0,
-        }
+        Progress { previous: Vec::new(), passed: 0 }
     }
 
     /// Judges the estimate after `count` samples; call with `first`, then with each count asked for.
     pub fn look(&self, progress: &mut Progress, count: u32, estimate: &[f64]) -> Verdict {
-        let error = if progress.previous.is_empty() {
-            f64::INFINITY
-        } else {
-            l2_distance(estimate, &progress.previous)
-        };
+        let error =
+            if progress.previous.is_empty() { f64::INFINITY } else { l2_distance(estimate, &progress.previous) };
         progress.previous.clear();
         progress.previous.extend_from_slice(estimate);
-        progress.passed = if error <= self.tolerance {
-            progress.passed + 1
-        } else {
-            0
-        };
+        progress.passed = if error <= self.tolerance { progress.passed + 1 } else { 0 };
         if progress.passed >= self.passes.max(1) {
             Verdict::Reached { error }
         } else if count >= self.last {
             Verdict::Exhausted { error }
         } else {
-            Verdict::Continue {
-                count: count.saturating_mul(2).min(self.last),
-            }
+            Verdict::Continue { count: count.saturating_mul(2).min(self.last) }
         }
     }
 }
@@ -83,11 +71,7 @@ impl Doubling {
 #[must_use]
 pub fn l2_distance(a: &[f64], b: &[f64]) -> f64 {
     debug_assert_eq!(a.len(), b.len(), "vectors of one estimate");
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b) * (a - b))
-        .sum::<f64>()
-        .sqrt()
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
 /// Independent estimates of one vector (other seeds, same count): their mean with an unbiased error.
@@ -124,10 +108,7 @@ impl Replicates {
     /// Standard error of each entry of the mean; infinite below two replicates.
     #[must_use]
     pub fn std_error(&self) -> Vec<f64> {
-        self.squares
-            .iter()
-            .map(|s| self.variance_of_mean(*s).sqrt())
-            .collect()
+        self.squares.iter().map(|s| self.variance_of_mean(*s).sqrt()).collect()
     }
 
     /// Expected L2 error of the mean; infinite below two replicates.

@@ -14,10 +14,7 @@ impl Rng {
     /// The start of stream `stream` (a receiver, a pixel) under `seed`.
     #[must_use]
     pub fn new(seed: u64, stream: u64) -> Self {
-        Self {
-            keys: [hash(seed, stream, 1), hash(seed, stream, 2)],
-            counter: 0,
-        }
+        Self { keys: [hash(seed, stream, 1), hash(seed, stream, 2)], counter: 0 }
     }
 
     /// Uniform over all 64-bit integers.
@@ -81,31 +78,17 @@ mod tests {
         let mut first = Rng::new(7, 3);
         let _ = first.next_u64();
         let second = first.next_u64();
-        let mut again = Rng {
-            counter: 1,
-            ..Rng::new(7, 3)
-        };
-        assert_eq!(
-            again.next_u64(),
-            second,
-            "the counter alone places the number"
-        );
+        let mut again = Rng { counter: 1, ..Rng::new(7, 3) };
+        assert_eq!(again.next_u64(), second, "the counter alone places the number");
     }
 
     #[test]
     fn golden_numbers_stay() {
         let mut rng = Rng::new(0, 0);
         let drawn = [rng.next_u64(), rng.next_u64(), rng.next_u64()];
-        assert_eq!(
-            drawn, GOLDEN_NUMBERS,
-            "a change here changes every baked file"
-        );
+        assert_eq!(drawn, GOLDEN_NUMBERS, "a change here changes every baked file");
     }
 
     /// From a second implementation with unbounded integers.
-    const GOLDEN_NUMBERS: [u64; 3] = [
-        12906561927352598825,
-        8023430836040283569,
-        16350183595436762453,
-    ];
+    const GOLDEN_NUMBERS: [u64; 3] = [12906561927352598825, 8023430836040283569, 16350183595436762453];
 }

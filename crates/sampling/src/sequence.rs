@@ -25,9 +25,7 @@ pub fn point(sequence: Sequence, index: u32, count: u32, seed: u64) -> [f32; 2] 
     match sequence {
         Sequence::OwenSobol => sobol(index, sobol_seed(seed, index / SOBOL_BLOCK)),
         Sequence::Fibonacci => fibonacci(index, count, shift(seed)),
-        Sequence::Stratified => {
-            jittered(index, count, (f64::from(count).sqrt() as u32).max(1), seed)
-        }
+        Sequence::Stratified => jittered(index, count, (f64::from(count).sqrt() as u32).max(1), seed),
     }
 }
 
@@ -70,13 +68,9 @@ fn shift(seed: u64) -> [u64; 2] {
 /// `((i + 1/2) / count, i / golden ratio)` plus the shift, modulo 1, in 64-bit fractions: exact for any count.
 #[inline]
 fn fibonacci(index: u32, count: u32, shift: [u64; 2]) -> [f32; 2] {
-    let position =
-        ((u128::from(2 * u64::from(index) + 1) << 64) / u128::from(2 * u64::from(count))) as u64;
+    let position = ((u128::from(2 * u64::from(index) + 1) << 64) / u128::from(2 * u64::from(count))) as u64;
     let turn = u64::from(index).wrapping_mul(GOLDEN);
-    [
-        unit(position.wrapping_add(shift[0])),
-        unit(turn.wrapping_add(shift[1])),
-    ]
+    [unit(position.wrapping_add(shift[0])), unit(turn.wrapping_add(shift[1]))]
 }
 
 /// The leading 24 bits of a fraction of 2^64.

@@ -10,12 +10,12 @@ mod sphere;
 
 pub use cone::{cone_height, cone_pdf, cone_to_square, square_to_cone};
 pub use cosine::{
-    cosine_concentric_pdf, cosine_concentric_to_square, cosine_hemisphere_pdf,
-    cosine_hemisphere_to_square, square_to_cosine_concentric, square_to_cosine_hemisphere,
+    cosine_concentric_pdf, cosine_concentric_to_square, cosine_hemisphere_pdf, cosine_hemisphere_to_square,
+    square_to_cosine_concentric, square_to_cosine_hemisphere,
 };
 pub use sphere::{
-    square_to_uniform_hemisphere, square_to_uniform_sphere, uniform_hemisphere_pdf,
-    uniform_hemisphere_to_square, uniform_sphere_pdf, uniform_sphere_to_square,
+    square_to_uniform_hemisphere, square_to_uniform_sphere, uniform_hemisphere_pdf, uniform_hemisphere_to_square,
+    uniform_sphere_pdf, uniform_sphere_to_square,
 };
 
 use std::f32::consts::TAU;

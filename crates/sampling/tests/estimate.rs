@@ -3,23 +3,14 @@
 use sampling::estimate::{Doubling, Replicates, Verdict};
 use testkit::assert_close;
 
-const RULE: Doubling = Doubling {
-    first: 64,
-    last: 1000,
-    tolerance: 0.1,
-    passes: 1,
-};
+const RULE: Doubling = Doubling { first: 64, last: 1000, tolerance: 0.1, passes: 1 };
 
 /// Feeds one-number estimates until the rule stops; counts and the last verdict.
 fn run(rule: &Doubling, estimates: &[f64]) -> (Vec<u32>, Verdict) {
     let mut progress = rule.start();
     let mut counts = vec![rule.first];
     for &value in estimates {
-        match rule.look(
-            &mut progress,
-            *counts.last().expect("never empty"),
-            &[value],
-        ) {
+        match rule.look(&mut progress, *counts.last().expect("never empty"), &[value]) {
             Verdict::Continue { count } => counts.push(count),
             verdict => return (counts, verdict),
         }
@@ -31,9 +22,7 @@ fn run(rule: &Doubling, estimates: &[f64]) -> (Vec<u32>, Verdict) {
 fn stops_at_the_first_small_change() {
     let (counts, verdict) = run(&RULE, &[1.0, 0.5, 0.45, 9.0]);
     assert_eq!(counts, [64, 128, 256]);
-    let Verdict::Reached { error } = verdict else {
-        panic!("{verdict:?}")
-    };
+    let Verdict::Reached { error } = verdict else { panic!("{verdict:?}") };
     assert_close!(error, 0.05, 1e-12, 0.0);
 }
 
@@ -41,11 +30,7 @@ fn stops_at_the_first_small_change() {
 fn two_passes_ask_for_confirmation() {
     let rule = Doubling { passes: 2, ..RULE };
     let (counts, verdict) = run(&rule, &[1.0, 0.95, 0.5, 0.52, 0.53]);
-    assert_eq!(
-        counts,
-        [64, 128, 256, 512, 1000],
-        "the change at 256 starts the count anew"
-    );
+    assert_eq!(counts, [64, 128, 256, 512, 1000], "the change at 256 starts the count anew");
     assert!(matches!(verdict, Verdict::Reached { .. }), "{verdict:?}");
 }
 
@@ -60,12 +45,7 @@ fn noise_can_fail() {
 
 #[test]
 fn a_single_look_knows_no_error() {
-    assert_eq!(
-        run(&Doubling { last: 64, ..RULE }, &[1.0]).1,
-        Verdict::Exhausted {
-            error: f64::INFINITY
-        }
-    );
+    assert_eq!(run(&Doubling { last: 64, ..RULE }, &[1.0]).1, Verdict::Exhausted { error: f64::INFINITY });
 }
 
 #[test]
@@ -76,12 +56,7 @@ fn replicates_equal_the_textbook() {
     }
     assert_eq!(replicates.mean(), [3.0, 5.0]);
     // Deviations -2, -1, 3: variance 14 / 2, of the mean 7 / 3.
-    assert_close!(
-        replicates.std_error()[0],
-        (7.0_f64 / 3.0).sqrt(),
-        1e-12,
-        0.0
-    );
+    assert_close!(replicates.std_error()[0], (7.0_f64 / 3.0).sqrt(), 1e-12, 0.0);
     assert_close!(replicates.std_error()[1], 0.0, 0.0, 0.0);
     assert_close!(replicates.l2_error(), (7.0_f64 / 3.0).sqrt(), 1e-12, 0.0);
 }
@@ -90,8 +65,5 @@ fn replicates_equal_the_textbook() {
 fn one_replicate_can_fail() {
     let mut replicates = Replicates::default();
     replicates.add(&[1.0]);
-    assert!(
-        replicates.l2_error().is_infinite(),
-        "one estimate knows no error"
-    );
+    assert!(replicates.l2_error().is_infinite(), "one estimate knows no error");
 }

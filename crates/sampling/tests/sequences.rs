@@ -3,11 +3,7 @@
 use sampling::sequence::{Sequence, fill, point};
 use testkit::chi2;
 
-const ALL: [Sequence; 3] = [
-    Sequence::OwenSobol,
-    Sequence::Fibonacci,
-    Sequence::Stratified,
-];
+const ALL: [Sequence; 3] = [Sequence::OwenSobol, Sequence::Fibonacci, Sequence::Stratified];
 
 fn set(sequence: Sequence, count: u32, seed: u64) -> Vec<[f32; 2]> {
     let mut points = vec![[9.0; 2]];
@@ -30,16 +26,9 @@ fn fill_equals_point_and_stays_in_the_square() {
         for count in [1, 2, 3, 7, 64, 100, 1000, 70_000] {
             let points = set(sequence, count, 3);
             assert_eq!(points.len(), count as usize, "{sequence:?}");
-            assert!(
-                points.iter().flatten().all(|v| (0.0..1.0).contains(v)),
-                "{sequence:?} of {count}"
-            );
+            assert!(points.iter().flatten().all(|v| (0.0..1.0).contains(v)), "{sequence:?} of {count}");
             for index in [0, count / 2, count - 1] {
-                assert_eq!(
-                    points[index as usize],
-                    point(sequence, index, count, 3),
-                    "{sequence:?} {index}/{count}"
-                );
+                assert_eq!(points[index as usize], point(sequence, index, count, 3), "{sequence:?} {index}/{count}");
             }
         }
     }
@@ -51,28 +40,17 @@ fn seeds_and_blocks_differ() {
         assert_ne!(set(sequence, 64, 1), set(sequence, 64, 2), "{sequence:?}");
     }
     let long = set(Sequence::OwenSobol, 1 << 17, 1);
-    assert_ne!(
-        long[..1 << 16],
-        long[1 << 16..],
-        "the second block is another scramble"
-    );
+    assert_ne!(long[..1 << 16], long[1 << 16..], "the second block is another scramble");
 }
 
 #[test]
 fn sobol_prefixes_are_nets() {
     let points = set(Sequence::OwenSobol, 4096, 17);
-    assert_eq!(
-        points[..100],
-        set(Sequence::OwenSobol, 100, 17),
-        "a prefix does not know the count"
-    );
+    assert_eq!(points[..100], set(Sequence::OwenSobol, 100, 17), "a prefix does not know the count");
     for power in 0..=12 {
         for columns in 0..=power {
             let fullest = fullest_cell(&points[..1 << power], 1 << columns, 1 << (power - columns));
-            assert_eq!(
-                fullest, 1,
-                "2^{power} points in a grid of 2^{columns} columns"
-            );
+            assert_eq!(fullest, 1, "2^{power} points in a grid of 2^{columns} columns");
         }
     }
 }
@@ -80,37 +58,19 @@ fn sobol_prefixes_are_nets() {
 #[test]
 fn jittered_points_have_a_cell_each() {
     let points = set(Sequence::Stratified, 4096, 17);
-    assert_eq!(
-        fullest_cell(&points, 64, 64),
-        1,
-        "one point per cell of a square count"
-    );
+    assert_eq!(fullest_cell(&points, 64, 64), 1, "one point per cell of a square count");
 }
 
 #[test]
 fn nets_can_fail() {
     let points = set(Sequence::Stratified, 4096, 17);
-    assert!(
-        fullest_cell(&points, 4096, 1) > 1,
-        "jittered points are no net"
-    );
-    assert!(
-        fullest_cell(&set(Sequence::OwenSobol, 4095, 17)[1..], 4096, 1) <= 1,
-        "fewer points fit as well"
-    );
-    assert!(
-        fullest_cell(&set(Sequence::OwenSobol, 4097, 17), 4096, 1) > 1,
-        "one point too many"
-    );
+    assert!(fullest_cell(&points, 4096, 1) > 1, "jittered points are no net");
+    assert!(fullest_cell(&set(Sequence::OwenSobol, 4095, 17)[1..], 4096, 1) <= 1, "fewer points fit as well");
+    assert!(fullest_cell(&set(Sequence::OwenSobol, 4097, 17), 4096, 1) > 1, "one point too many");
 }
 
 /// Each point of one index is uniform over the seeds: what makes the estimates unbiased.
-fn uniform_over_seeds(
-    sequence: Sequence,
-    count: u32,
-    index: u32,
-    replicates: u64,
-) -> Result<(), String> {
+fn uniform_over_seeds(sequence: Sequence, count: u32, index: u32, replicates: u64) -> Result<(), String> {
     let mut observed = vec![0_u64; 64];
     // The stratified point of an index is uniform in its cell only, so count = 1 stands for it there.
     for seed in 0..replicates {
@@ -130,10 +90,7 @@ fn points_are_uniform_over_seeds() {
 
 #[test]
 fn uniformity_can_fail() {
-    assert!(
-        uniform_over_seeds(Sequence::Stratified, 4, 0, 20_000).is_err(),
-        "a cell is not the square"
-    );
+    assert!(uniform_over_seeds(Sequence::Stratified, 4, 0, 20_000).is_err(), "a cell is not the square");
 }
 
 #[test]

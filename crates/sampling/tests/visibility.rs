@@ -15,11 +15,7 @@ use testkit::quadrature::{band_quadrature, sphere_quadrature};
 const N: usize = 25;
 const REPLICATES: u64 = 40;
 /// Axis (not unit) and half angle of each obstacle.
-const CAPS: [([f64; 3], f64); 3] = [
-    ([0.2, 0.3, 1.0], 0.35),
-    ([1.0, -0.2, 0.8], 0.45),
-    ([-0.9, -0.5, 0.7], 0.30),
-];
+const CAPS: [([f64; 3], f64); 3] = [([0.2, 0.3, 1.0], 0.35), ([1.0, -0.2, 0.8], 0.45), ([-0.9, -0.5, 0.7], 0.30)];
 
 fn monomials(d: DVec3) -> [f64; N] {
     let powers = |v: f64| [1.0, v, v * v, v * v * v, v * v * v * v];
@@ -54,11 +50,7 @@ impl Basis {
             for j in 0..=i {
                 let dot: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
                 let rest = lower[i][j] - dot;
-                lower[i][j] = if i == j {
-                    rest.sqrt()
-                } else {
-                    rest / lower[j][j]
-                };
+                lower[i][j] = if i == j { rest.sqrt() } else { rest / lower[j][j] };
             }
         }
         Self { lower }
@@ -80,9 +72,7 @@ impl Basis {
             let values = self.evaluate(d);
             (0..N).for_each(|i| sum[i] += weight * d.z / PI * values[i]);
         };
-        band_quadrature(0.0, 1.0, 24)
-            .into_iter()
-            .for_each(|(d, weight)| add(DVec3::from_array(d), weight));
+        band_quadrature(0.0, 1.0, 24).into_iter().for_each(|(d, weight)| add(DVec3::from_array(d), weight));
         for (axis, half_angle) in caps() {
             let frame = Frame::from_normal(axis.as_vec3());
             let [t, b] = [frame.tangent, frame.bitangent].map(|v| v.as_dvec3());
@@ -95,8 +85,7 @@ impl Basis {
 }
 
 fn caps() -> impl Iterator<Item = (DVec3, f64)> {
-    CAPS.iter()
-        .map(|&(axis, half_angle)| (DVec3::from_array(axis).normalize(), half_angle))
+    CAPS.iter().map(|&(axis, half_angle)| (DVec3::from_array(axis).normalize(), half_angle))
 }
 
 fn visible(d: DVec3) -> bool {
@@ -127,13 +116,7 @@ fn jittered_sphere(index: u32, count: u32, seed: u64) -> (Vec3, f32) {
 }
 
 /// Sum over the samples of a range; the estimate is the sum over the count.
-fn partial_sum(
-    basis: &Basis,
-    sampler: Sampler,
-    range: std::ops::Range<u32>,
-    count: u32,
-    seed: u64,
-) -> [f64; N] {
+fn partial_sum(basis: &Basis, sampler: Sampler, range: std::ops::Range<u32>, count: u32, seed: u64) -> [f64; N] {
     let mut sum = [0.0; N];
     for index in range {
         let (direction, pdf) = sampler(index, count, seed);
@@ -156,17 +139,14 @@ fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 fn rmse(basis: &Basis, truth: &[f64], sampler: Sampler, count: u32) -> f64 {
-    root_mean_square(
-        (0..REPLICATES).map(|seed| l2_distance(&estimate(basis, sampler, count, seed), truth)),
-    )
+    root_mean_square((0..REPLICATES).map(|seed| l2_distance(&estimate(basis, sampler, count, seed), truth)))
 }
 
 /// Worst ratio of a sampler's error to that of the jittered sphere at equal counts.
 fn worst_ratio(sampler: Sampler) -> f64 {
     let basis = Basis::new();
     let truth = basis.truth();
-    let ratio =
-        |count| rmse(&basis, &truth, sampler, count) / rmse(&basis, &truth, jittered_sphere, count);
+    let ratio = |count| rmse(&basis, &truth, sampler, count) / rmse(&basis, &truth, jittered_sphere, count);
     [256, 1024, 4096].into_iter().map(ratio).fold(0.0, f64::max)
 }
 
@@ -185,30 +165,19 @@ fn fibonacci_cosine_beats_the_jittered_sphere() {
 #[test]
 fn random_cosine_can_fail() {
     let ratio = worst_ratio(random_cosine);
-    assert!(
-        ratio > 1.0,
-        "independent samples must lose against strata: {ratio:.3}"
-    );
+    assert!(ratio > 1.0, "independent samples must lose against strata: {ratio:.3}");
 }
 
 /// Root mean squares of estimated over true error of the last doubling at 2048 samples.
 fn doubling_ratio(sampler: Sampler) -> f64 {
     let basis = Basis::new();
     let truth = basis.truth();
-    let rule = Doubling {
-        first: 1024,
-        last: 2048,
-        tolerance: 0.0,
-        passes: 1,
-    };
+    let rule = Doubling { first: 1024, last: 2048, tolerance: 0.0, passes: 1 };
     let (mut estimated, mut real) = (Vec::new(), Vec::new());
     for seed in 0..REPLICATES {
         let mut progress = rule.start();
         let first = estimate(&basis, sampler, 1024, seed);
-        assert_eq!(
-            rule.look(&mut progress, 1024, &first),
-            Verdict::Continue { count: 2048 }
-        );
+        assert_eq!(rule.look(&mut progress, 1024, &first), Verdict::Continue { count: 2048 });
         let second = estimate(&basis, sampler, 2048, seed);
         let Verdict::Exhausted { error } = rule.look(&mut progress, 2048, &second) else {
             panic!("the second look is the last");
@@ -222,20 +191,14 @@ fn doubling_ratio(sampler: Sampler) -> f64 {
 #[test]
 fn doubling_overestimates_mildly() {
     let ratio = doubling_ratio(sobol_cosine);
-    assert!(
-        (1.15..1.75).contains(&ratio),
-        "estimated over true error {ratio:.3}"
-    );
+    assert!((1.15..1.75).contains(&ratio), "estimated over true error {ratio:.3}");
 }
 
 #[test]
 fn doubling_of_a_lattice_can_fail() {
     // The lattice of half the count is another lattice, not a prefix: its change tells more than the error.
     let ratio = doubling_ratio(fibonacci_cosine);
-    assert!(
-        !(1.15..1.75).contains(&ratio),
-        "estimated over true error {ratio:.3}"
-    );
+    assert!(!(1.15..1.75).contains(&ratio), "estimated over true error {ratio:.3}");
 }
 
 #[test]
@@ -245,17 +208,12 @@ fn replicates_estimate_their_error() {
     let (mut estimated, mut real) = (Vec::new(), Vec::new());
     for group in 0..60 {
         let mut replicates = Replicates::default();
-        (0..8).for_each(|k| {
-            replicates.add(&estimate(&basis, sobol_cosine, 256, 1000 + group * 8 + k))
-        });
+        (0..8).for_each(|k| replicates.add(&estimate(&basis, sobol_cosine, 256, 1000 + group * 8 + k)));
         estimated.push(replicates.l2_error());
         real.push(l2_distance(replicates.mean(), &truth));
     }
     let ratio = root_mean_square(estimated.into_iter()) / root_mean_square(real.into_iter());
-    assert!(
-        (0.85..1.2).contains(&ratio),
-        "estimated over true error {ratio:.3}"
-    );
+    assert!((0.85..1.2).contains(&ratio), "estimated over true error {ratio:.3}");
 }
 
 #[test]
@@ -264,17 +222,8 @@ fn treating_a_net_as_independent_can_fail() {
     let truth = basis.truth();
     let mut samples = Replicates::default();
     for index in 0..1024 {
-        samples.add(&partial_sum(
-            &basis,
-            sobol_cosine,
-            index..index + 1,
-            1024,
-            1,
-        ));
+        samples.add(&partial_sum(&basis, sobol_cosine, index..index + 1, 1024, 1));
     }
     let ratio = samples.l2_error() / rmse(&basis, &truth, sobol_cosine, 1024);
-    assert!(
-        ratio > 3.0,
-        "the variance of single samples says far too much: {ratio:.3}"
-    );
+    assert!(ratio > 3.0, "the variance of single samples says far too much: {ratio:.3}");
 }

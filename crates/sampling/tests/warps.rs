@@ -69,21 +69,13 @@ const WARPS: [Warp; 6] = [
 
 fn directions(warp: &Warp) -> Vec<[f64; 3]> {
     let mut rng = Rng::new(11, 0);
-    (0..SAMPLES)
-        .map(|_| (warp.warp)(rng.next_square()).to_array().map(f64::from))
-        .collect()
+    (0..SAMPLES).map(|_| (warp.warp)(rng.next_square()).to_array().map(f64::from)).collect()
 }
 
 fn check(warp: &Warp, pdf: impl Fn(Vec3) -> f64) -> Result<(), String> {
-    let bins = SphereBins {
-        z_range: [warp.z_low, 1.0],
-        n_z: 20,
-        n_phi: 40,
-    };
+    let bins = SphereBins { z_range: [warp.z_low, 1.0], n_z: 20, n_phi: 40 };
     let pdf = |d: [f64; 3]| pdf(Vec3::from_array(d.map(|v| v as f32)));
-    bins.test(&directions(warp), pdf, ALPHA, WARPS.len())
-        .map(drop)
-        .map_err(|e| format!("{}: {e}", warp.name))
+    bins.test(&directions(warp), pdf, ALPHA, WARPS.len()).map(drop).map_err(|e| format!("{}: {e}", warp.name))
 }
 
 #[test]
@@ -98,22 +90,11 @@ fn warps_follow_their_densities() {
 fn wrong_densities_can_fail() {
     for warp in &WARPS[..5] {
         let pdf = |d| f64::from((warp.pdf)(d));
-        assert!(
-            check(warp, |d| 1.02 * pdf(d)).is_err(),
-            "{}: 2 % too large",
-            warp.name
-        );
-        assert!(
-            check(warp, |d| pdf(d) * f64::from(1.0 + 0.1 * d.x)).is_err(),
-            "{}: tilted by 10 %",
-            warp.name
-        );
+        assert!(check(warp, |d| 1.02 * pdf(d)).is_err(), "{}: 2 % too large", warp.name);
+        assert!(check(warp, |d| pdf(d) * f64::from(1.0 + 0.1 * d.x)).is_err(), "{}: tilted by 10 %", warp.name);
     }
     let cosine = &WARPS[2];
-    assert!(
-        check(cosine, |d| f64::from(warp::uniform_hemisphere_pdf(d))).is_err(),
-        "uniform is not cosine"
-    );
+    assert!(check(cosine, |d| f64::from(warp::uniform_hemisphere_pdf(d))).is_err(), "uniform is not cosine");
 }
 
 /// Largest error of a coordinate after the way there and back; the longitude wraps around.
@@ -124,11 +105,7 @@ fn round_trip_error(warp: &Warp, inverse: fn(Vec3) -> [f32; 2]) -> f32 {
         // Away from the poles and the rim, where a coordinate has no influence or infinite slope.
         let u = rng.next_square().map(|v| 0.02 + 0.96 * v);
         let back = inverse((warp.warp)(u));
-        assert!(
-            back.iter().all(|v| (0.0..1.0).contains(v)),
-            "{}: {back:?} leaves the square",
-            warp.name
-        );
+        assert!(back.iter().all(|v| (0.0..1.0).contains(v)), "{}: {back:?} leaves the square", warp.name);
         worst = (0..2).map(|k| (back[k] - u[k]).abs()).fold(worst, f32::max);
     }
     worst
@@ -145,12 +122,7 @@ fn inverses_return_the_square() {
 #[test]
 fn wrong_inverses_can_fail() {
     for (warp, other) in WARPS.iter().zip(WARPS.iter().cycle().skip(1)) {
-        assert!(
-            round_trip_error(warp, other.inverse) > ROUND_TRIP,
-            "{} against {}",
-            warp.name,
-            other.name
-        );
+        assert!(round_trip_error(warp, other.inverse) > ROUND_TRIP, "{} against {}", warp.name, other.name);
     }
 }
 
@@ -158,28 +130,14 @@ fn wrong_inverses_can_fail() {
 fn corners_and_poles_are_unit_and_finite() {
     let below_one = 1.0 - f32::EPSILON / 2.0;
     for warp in &WARPS {
-        for u in [
-            [0.0, 0.0],
-            [0.0, below_one],
-            [below_one, 0.0],
-            [below_one, below_one],
-            [0.5, 0.5],
-        ] {
+        for u in [[0.0, 0.0], [0.0, below_one], [below_one, 0.0], [below_one, below_one], [0.5, 0.5]] {
             let direction = (warp.warp)(u);
-            assert!(
-                (direction.length() - 1.0).abs() < 1e-6,
-                "{} at {u:?}: {direction}",
-                warp.name
-            );
+            assert!((direction.length() - 1.0).abs() < 1e-6, "{} at {u:?}: {direction}", warp.name);
             assert!((warp.pdf)(direction) >= 0.0, "{} at {u:?}", warp.name);
         }
         for pole in [Vec3::Z, -Vec3::Z, Vec3::X, -Vec3::X, -Vec3::Y] {
             let u = (warp.inverse)(pole);
-            assert!(
-                u.iter().all(|v| (0.0..1.0).contains(v)),
-                "{} at {pole}: {u:?}",
-                warp.name
-            );
+            assert!(u.iter().all(|v| (0.0..1.0).contains(v)), "{} at {pole}: {u:?}", warp.name);
         }
     }
 }
@@ -205,11 +163,7 @@ fn lattices_follow_the_cosine_too() {
     for sequence in [OwenSobol, Fibonacci, Stratified] {
         let mut points = Vec::new();
         sequence::fill(sequence, 10_000, 5, &mut points);
-        let mean_z = points
-            .iter()
-            .map(|&u| f64::from(warp::square_to_cosine_hemisphere(u).z))
-            .sum::<f64>()
-            / 1e4;
+        let mean_z = points.iter().map(|&u| f64::from(warp::square_to_cosine_hemisphere(u).z)).sum::<f64>() / 1e4;
         testkit::assert_close!(mean_z, 2.0 / 3.0, 1e-3, 0.0, "{sequence:?}");
     }
 }

@@ -29,29 +29,18 @@ pub fn square_to_cone([x, y]: [f32; 2], height: f32) -> Vec3 {
 #[must_use]
 pub fn cone_pdf(direction: Vec3, height: f32) -> f32 {
     // A few roundings beyond the rim still count: the samples on it must not get density 0.
-    if height_of(direction) <= height * (1.0 + 4.0 * f32::EPSILON) {
-        1.0 / (TAU * height)
-    } else {
-        0.0
-    }
+    if height_of(direction) <= height * (1.0 + 4.0 * f32::EPSILON) { 1.0 / (TAU * height) } else { 0.0 }
 }
 
 /// Inverse of [`square_to_cone`].
 #[inline]
 #[must_use]
 pub fn cone_to_square(direction: Vec3, height: f32) -> [f32; 2] {
-    [
-        (height_of(direction) / height).min(BELOW_ONE),
-        turn_of(direction.x, direction.y),
-    ]
+    [(height_of(direction) / height).min(BELOW_ONE), turn_of(direction.x, direction.y)]
 }
 
 /// `1 - z` of a unit direction without cancellation near the axis.
 #[inline]
 fn height_of(Vec3 { x, y, z }: Vec3) -> f32 {
-    if z > 0.0 {
-        (x * x + y * y) / (1.0 + z)
-    } else {
-        1.0 - z
-    }
+    if z > 0.0 { (x * x + y * y) / (1.0 + z) } else { 1.0 - z }
 }

@@ -42,11 +42,7 @@ pub fn square_to_cosine_concentric([x, y]: [f32; 2]) -> Vec3 {
         (0.0, 0.0)
     };
     let (sin, cos) = libm::sincosf(angle);
-    Vec3::new(
-        radius * cos,
-        radius * sin,
-        (1.0 - radius * radius).max(0.0).sqrt(),
-    )
+    Vec3::new(radius * cos, radius * sin, (1.0 - radius * radius).max(0.0).sqrt())
 }
 
 /// Density of [`square_to_cosine_concentric`] per solid angle: `cos / pi`, 0 below the horizon.

@@ -25,10 +25,7 @@ pub fn uniform_sphere_pdf(_direction: Vec3) -> f32 {
 #[inline]
 #[must_use]
 pub fn uniform_sphere_to_square(direction: Vec3) -> [f32; 2] {
-    [
-        (0.5 * (1.0 - direction.z)).clamp(0.0, BELOW_ONE),
-        turn_of(direction.x, direction.y),
-    ]
+    [(0.5 * (1.0 - direction.z)).clamp(0.0, BELOW_ONE), turn_of(direction.x, direction.y)]
 }
 
 /// Uniform on the upper hemisphere, from +z down.
@@ -51,8 +48,5 @@ pub fn uniform_hemisphere_pdf(direction: Vec3) -> f32 {
 #[inline]
 #[must_use]
 pub fn uniform_hemisphere_to_square(direction: Vec3) -> [f32; 2] {
-    [
-        (1.0 - direction.z).clamp(0.0, BELOW_ONE),
-        turn_of(direction.x, direction.y),
-    ]
+    [(1.0 - direction.z).clamp(0.0, BELOW_ONE), turn_of(direction.x, direction.y)]
 }
