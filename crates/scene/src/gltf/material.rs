@@ -116,6 +116,11 @@ impl Pictures<'_> {
 
     /// The decoded image, or white with a warning.
     fn picture(&mut self, image: usize) -> Texture {
+        if image >= self.document.root.images.len() {
+            // Only an extension names a source, in a format that is not read.
+            warn(self.report, "textures", "a texture without a PNG or JPEG source; white is used");
+            return Texture::white("no source");
+        }
         if let Some(texture) = self.decoded.get(&image) {
             return texture.clone();
         }

@@ -32,7 +32,8 @@ pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
     check::warn_of_unknown_materials(&text, &materials, &mut report);
     let (materials, textures) = mtl::convert(&materials, &folder, &mut report);
     let default_material = materials.len() as u32 - 1;
-    let meshes = models.iter().map(|model| mesh(model, default_material, &mut report)).collect();
+    let faced = models.iter().filter(|model| !model.mesh.indices.is_empty());
+    let meshes = faced.map(|model| mesh(model, default_material, &mut report)).collect();
     let mut scene = Scene { name: file.display().to_string(), meshes, materials, textures, report, ..Scene::default() };
     solid::mark_double_sided(&mut scene);
     Ok(scene)
