@@ -3,6 +3,7 @@
 //! With u right and v up in [-1, 1] over the picture and `r = hypot(u, v)`, the angle from forward is `pi r`:
 //! the centre looks along +z, the rim straight back, and the corners outside the disc hold no light.
 
+use crate::gauss::gauss5;
 use crate::patch::{Patch, Rect};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -58,16 +59,6 @@ fn density(u: f64, v: f64) -> f64 {
         return PI * PI;
     }
     libm::sin(PI * r) * PI / r
-}
-
-/// Abscissas and weights of five-point Gauss-Legendre quadrature on [-1, 1]: zeros of P5,
-/// `0, +-(1/3) sqrt(5 -+ 2 sqrt(10/7))`, weights `128/225, (322 +- 13 sqrt 70)/900`.
-fn gauss5() -> [(f64, f64); 5] {
-    let (s, t) = (libm::sqrt(10.0 / 7.0), libm::sqrt(70.0));
-    let inner = libm::sqrt(5.0 - 2.0 * s) / 3.0;
-    let outer = libm::sqrt(5.0 + 2.0 * s) / 3.0;
-    let (wide, narrow) = ((322.0 + 13.0 * t) / 900.0, (322.0 - 13.0 * t) / 900.0);
-    [(-outer, narrow), (-inner, wide), (0.0, 128.0 / 225.0), (inner, wide), (outer, narrow)]
 }
 
 /// Integral of [`density`] over the part of `[u0,u1] x [v0,v1]` on the disc; each line is cut at the rim.

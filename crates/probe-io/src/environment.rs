@@ -1,5 +1,6 @@
 //! All the light that falls on a scene from far away.
 
+use crate::gauss::gauss5;
 use crate::{Layout, Probe, equirect};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -30,8 +31,9 @@ pub struct Lamp {
 /// bands with an error below 1e-4.
 const PROJECTION_ROWS: usize = 256;
 
-/// Rings of a lamp's disc in a projection, and samples per ring.
-const LAMP_RINGS: usize = 8;
+/// A lamp's disc in a projection: bands of five Gauss-Legendre rings, and samples per ring, which leave no error
+/// below degree 32 in the azimuth.
+const LAMP_BANDS: usize = 2;
 const LAMP_SPOKES: usize = 32;
 
 /// Side of the grid over which a pixel of an analytic light is averaged.
@@ -129,25 +131,27 @@ impl Lamp {
         2.0 * TAU * sin * sin
     }
 
-    /// Rings of equal solid angle with equal spokes; a point is one sample that carries its irradiance.
+    /// Gauss-Legendre rings with equal spokes; a point is one sample that carries its irradiance.
     pub(crate) fn samples(&self) -> Vec<(DVec3, [f64; 3])> {
         let axis = self.direction.as_dvec3();
         if self.half_angle <= 0.0 {
             return vec![(axis, self.irradiance.map(f64::from))];
         }
         let sin = libm::sin(f64::from(self.half_angle));
-        let share = self.solid_angle() / (LAMP_RINGS * LAMP_SPOKES) as f64;
-        let weight = self.irradiance.map(|e| f64::from(e) / (PI * sin * sin) * share);
+        let radiance = self.irradiance.map(|e| f64::from(e) / (PI * sin * sin));
         let (tangent, bitangent) = axis.any_orthonormal_pair();
-        let depth = self.solid_angle() / TAU;
-        let mut samples = Vec::with_capacity(LAMP_RINGS * LAMP_SPOKES);
-        for ring in 0..LAMP_RINGS {
-            let below = depth * (ring as f64 + 0.5) / LAMP_RINGS as f64;
+        // 1 - cos of the angle from the axis: solid angle is 2 pi times it.
+        let band = self.solid_angle() / TAU / LAMP_BANDS as f64;
+        let mut samples = Vec::with_capacity(5 * LAMP_BANDS * LAMP_SPOKES);
+        for ring in 0..5 * LAMP_BANDS {
+            let (node, share) = gauss5()[ring % 5];
+            let below = band * ((ring / 5) as f64 + 0.5 + 0.5 * node);
+            let solid_angle = TAU * band * 0.5 * share / LAMP_SPOKES as f64;
             let flat = libm::sqrt(below * (2.0 - below));
             for spoke in 0..LAMP_SPOKES {
                 let (s, c) = libm::sincos(TAU * (spoke as f64 + 0.5) / LAMP_SPOKES as f64);
                 let d = axis * (1.0 - below) + (tangent * c + bitangent * s) * flat;
-                samples.push((d, weight));
+                samples.push((d, radiance.map(|r| r * solid_angle)));
             }
         }
         samples

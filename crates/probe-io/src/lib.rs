@@ -7,6 +7,7 @@ mod detect;
 mod environment;
 mod equirect;
 mod error;
+mod gauss;
 mod layout;
 mod load;
 mod openexr;
