@@ -1,8 +1,8 @@
 //! One path: the light that leaves a diffuse surface, estimated once without bias.
 
-use crate::{Light, Receiver, World};
+use crate::world::Surface;
+use crate::{Light, World};
 use glam::Vec3;
-use raytrace::offset_origin;
 use sampling::frame::Frame;
 use sampling::rng::Rng;
 use sampling::warp::{cosine_concentric_pdf, square_to_cosine_concentric};
@@ -18,36 +18,32 @@ const MAX_SURVIVAL: f32 = 0.95;
 /// Each surface on the path adds the light that reaches it straight: from lamps by a direction to each, from the
 /// picture by two directions, one drawn by radiance and one by the cosine, weighted by the balance heuristic. The
 /// second one carries the path on where it hits something.
-pub(crate) fn outgoing(
-    world: &World,
-    light: &Light,
-    surface: Receiver,
-    max_bounces: Option<u32>,
-    rng: &mut Rng,
-) -> Vec3 {
-    let mut surface = surface;
-    let mut throughput = surface.albedo;
+pub(crate) fn outgoing(world: &World, light: &Light, start: Surface, max_bounces: Option<u32>, rng: &mut Rng) -> Vec3 {
+    let mut surface = start;
+    let mut throughput = start.albedo;
     let mut sum = Vec3::ZERO;
     let mut bounce = 0;
     while throughput.max_element() > 0.0 {
-        let origin = offset_origin(surface.position, surface.geometric_normal);
-        sum += throughput
-            * (from_lamps(world, light, &surface, origin, rng) + from_image(world, light, &surface, origin, rng));
+        sum += throughput * (from_lamps(world, light, &surface, rng) + from_image(world, light, &surface, rng));
 
         let local = square_to_cosine_concentric(rng.next_square());
         let direction = Frame::from_normal(surface.normal).to_world(local).normalize();
-        let is_last = max_bounces == Some(bounce);
-        let next = if is_last { None } else { world.closest(origin, direction) };
-        let Some(next) = next else {
-            if !(is_last && world.occluded(origin, direction)) {
+        let step = if max_bounces == Some(bounce) {
+            last_step(world, surface.origin, direction)
+        } else {
+            world.closest(surface.origin, direction).map_or(Step::Sky, Step::Surface)
+        };
+        match step {
+            Step::Blocked => break,
+            Step::Sky => {
                 let (radiance, light_pdf) = light.image.look(direction);
                 let pdf = cosine_concentric_pdf(local);
                 sum += throughput * radiance * (pdf / (pdf + light_pdf));
+                break;
             }
-            break;
-        };
-        throughput *= next.albedo;
-        surface = next;
+            Step::Surface(next) => surface = next,
+        }
+        throughput *= surface.albedo;
         bounce += 1;
         if max_bounces.is_none() && bounce > SURE_BOUNCES {
             let survival = throughput.max_element().min(MAX_SURVIVAL);
@@ -60,13 +56,28 @@ pub(crate) fn outgoing(
     sum
 }
 
+/// Where a path goes next.
+enum Step {
+    /// On to another surface.
+    Surface(Surface),
+    /// Out, to the picture.
+    Sky,
+    /// To a surface that no longer counts.
+    Blocked,
+}
+
+/// The step after the last bounce needs only to know whether it leaves the scene.
+fn last_step(world: &World, origin: Vec3, direction: Vec3) -> Step {
+    if world.occluded(origin, direction) { Step::Blocked } else { Step::Sky }
+}
+
 /// Direct light of all lamps that an albedo of 1 would reflect.
-fn from_lamps(world: &World, light: &Light, surface: &Receiver, origin: Vec3, rng: &mut Rng) -> Vec3 {
+fn from_lamps(world: &World, light: &Light, surface: &Surface, rng: &mut Rng) -> Vec3 {
     let mut sum = Vec3::ZERO;
     for lamp in &light.lamps {
         let (direction, flux) = lamp.sample(rng.next_square());
         let cosine = surface.normal.dot(direction);
-        if cosine > 0.0 && !world.occluded(origin, direction) {
+        if cosine > 0.0 && !world.occluded(surface.origin, direction) {
             sum += flux * (cosine * FRAC_1_PI);
         }
     }
@@ -74,12 +85,12 @@ fn from_lamps(world: &World, light: &Light, surface: &Receiver, origin: Vec3, rn
 }
 
 /// The picture's direct light by a direction drawn from it, with its share in the balance heuristic.
-fn from_image(world: &World, light: &Light, surface: &Receiver, origin: Vec3, rng: &mut Rng) -> Vec3 {
+fn from_image(world: &World, light: &Light, surface: &Surface, rng: &mut Rng) -> Vec3 {
     let Some(sample) = light.image.sample([rng.next_f64(), rng.next_f64()]) else {
         return Vec3::ZERO;
     };
     let cosine = surface.normal.dot(sample.direction);
-    if cosine <= 0.0 || world.occluded(origin, sample.direction) {
+    if cosine <= 0.0 || world.occluded(surface.origin, sample.direction) {
         return Vec3::ZERO;
     }
     // radiance * (cosine / pi) / pdf * pdf / (pdf + cosine pdf)

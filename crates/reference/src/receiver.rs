@@ -1,8 +1,10 @@
 //! Radiance at single points, with its standard error.
 
+use crate::world::Surface;
 use crate::{Light, Settings, World, path};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use raytrace::offset_origin;
 use sampling::rng::Rng;
 
 /// A point of a diffuse surface, on one side.
@@ -16,6 +18,13 @@ pub struct Receiver {
     pub geometric_normal: Vec3,
     /// Diffuse, RGB in [0, 1].
     pub albedo: Vec3,
+}
+
+impl Receiver {
+    fn surface(&self) -> Surface {
+        let origin = offset_origin(self.position, self.geometric_normal);
+        Surface { origin, normal: self.normal, albedo: self.albedo }
+    }
 }
 
 /// A mean over independent paths.
@@ -33,7 +42,8 @@ pub struct Estimate {
 pub fn radiance_at(world: &World, light: &Light, receivers: &[Receiver], settings: &Settings) -> Vec<Estimate> {
     let estimate = |(index, receiver): (usize, &Receiver)| {
         let mut rng = Rng::new(settings.seed, index as u64);
-        average(settings.samples, || path::outgoing(world, light, *receiver, settings.max_bounces, &mut rng))
+        let start = receiver.surface();
+        average(settings.samples, || path::outgoing(world, light, start, settings.max_bounces, &mut rng))
     };
     receivers.par_iter().enumerate().map(estimate).collect()
 }

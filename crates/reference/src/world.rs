@@ -1,8 +1,7 @@
 //! The scene as rays see it: what they hit, and the surface that is there.
 
-use crate::Receiver;
 use glam::Vec3;
-use raytrace::{Hit, Ray, Tracer};
+use raytrace::{Hit, Ray, Tracer, offset_origin_on};
 use sampling::rng::Rng;
 use scene::{Material, Scene};
 
@@ -25,11 +24,22 @@ struct Layer<'a> {
     normals: Vec<Vec3>,
 }
 
+/// One side of a diffuse surface at a point, as far as light needs to know it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Surface {
+    /// Just off the surface on this side: where rays start.
+    pub(crate) origin: Vec3,
+    /// Unit shading normal on this side.
+    pub(crate) normal: Vec3,
+    /// Diffuse, RGB in [0, 1].
+    pub(crate) albedo: Vec3,
+}
+
 /// What a camera ray shows: a lit surface and its own emission.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seen {
     /// The side of the surface that faces the camera.
-    pub(crate) surface: Receiver,
+    pub(crate) surface: Surface,
     /// Radiance that it emits.
     pub(crate) emission: Vec3,
 }
@@ -49,7 +59,7 @@ impl<'a> World<'a> {
     }
 
     /// The surface that a ray of light meets, on the side where it arrives.
-    pub(crate) fn closest(&self, origin: Vec3, direction: Vec3) -> Option<Receiver> {
+    pub(crate) fn closest(&self, origin: Vec3, direction: Vec3) -> Option<Surface> {
         let hit = self.solid.closest(&Ray::new(origin, direction))?;
         Some(self.solid.surface(&hit))
     }
@@ -127,15 +137,15 @@ impl<'a> Layer<'a> {
     }
 
     /// The side of the surface that was hit. The shading normal goes with the side of the winding.
-    fn surface(&self, hit: &Hit) -> Receiver {
+    fn surface(&self, hit: &Hit) -> Surface {
         let (m, triangle) = self.part(hit.triangle);
         let mesh = &self.scene.meshes[m];
-        let geometric_normal = self.normals[hit.triangle as usize] * if hit.front { 1.0 } else { -1.0 };
+        let side = self.normals[hit.triangle as usize] * if hit.front { 1.0 } else { -1.0 };
+        let corners = mesh.triangles[triangle].map(|corner| mesh.positions[corner as usize]);
         let normal = mesh.normal(triangle, hit.u, hit.v);
-        Receiver {
-            position: mesh.position(triangle, hit.u, hit.v),
-            normal: if normal.dot(geometric_normal) < 0.0 { -normal } else { normal },
-            geometric_normal,
+        Surface {
+            origin: offset_origin_on(corners, mesh.position(triangle, hit.u, hit.v), side),
+            normal: if normal.dot(side) < 0.0 { -normal } else { normal },
             albedo: self.scene.albedo(m, triangle, hit.u, hit.v),
         }
     }

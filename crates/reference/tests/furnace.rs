@@ -49,7 +49,7 @@ fn check(estimates: &[Estimate], expected: f64) -> Result<(), String> {
 #[test]
 fn white_surfaces_vanish_in_every_scene() {
     for (name, _) in scene::BUILTINS.iter().filter(|(name, _)| !CLOSED.contains(name)) {
-        let estimates = trace(&painted(name, 1.0), 24, 2000, None);
+        let estimates = trace(&painted(name, 1.0), 24, 1000, None);
         // Floors go on under blocks and columns, where no light comes in: exactly none.
         let (lit, sealed): (Vec<_>, Vec<_>) = estimates.into_iter().partition(|e| e.mean[0] != 0.0);
         assert!(sealed.len() <= 4, "{name}: {} receivers in the dark", sealed.len());
