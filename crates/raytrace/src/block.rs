@@ -87,8 +87,8 @@ pub(crate) fn see<F: Lanes>(block: &Block, origin: Vec3) -> Seen {
     let mut seen = Seen::NOTHING;
     let missing = F::where_less(turn.abs(), F::splat(0.5), F::splat(-1.0), F::splat(0.0));
     for (k, (normal, bound)) in edges.into_iter().enumerate() {
-        for axis in 0..3 {
-            normal[axis].mul(turn).store(&mut seen.normals[3 * k + axis]);
+        for (axis, component) in normal.into_iter().enumerate() {
+            component.mul(turn).store(&mut seen.normals[3 * k + axis]);
         }
         // Where nothing can be hit the bound is -1 and the normal 0: never a candidate.
         F::where_less(missing, F::splat(0.0), missing, bound).store(&mut seen.slack[k]);

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// What testing a block costs against a step through a binary node: at once, and per triangle.
 const BLOCK_COST: f32 = 0.9;
-const TRIANGLE_COST: f32 = 0.35;
+const TRIANGLE_COST: f32 = 0.2;
 const NODE_COST: f32 = 0.6;
 
 /// Largest number of references per triangle that splitting large triangles may make.

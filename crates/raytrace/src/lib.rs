@@ -26,6 +26,7 @@ mod ray;
 mod sight;
 mod tracer;
 mod tree;
+mod validate;
 mod walk;
 #[cfg(target_arch = "x86_64")]
 mod x86;

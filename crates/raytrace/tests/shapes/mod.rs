@@ -94,3 +94,30 @@ pub fn hemisphere(normal: Vec3, n: usize) -> Vec<Vec3> {
     };
     (0..n).map(|i| cell(i).normalize()).collect()
 }
+
+/// A closed mesh around the origin with shared vertices: an octahedron divided `levels` times, its radius between
+/// 1 - bump and 1 + bump at random.
+pub fn ball(levels: u32, bump: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let mut positions = vec![Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let mut triangles: Vec<[u32; 3]> =
+        vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    for _ in 0..levels {
+        let mut middles = std::collections::BTreeMap::new();
+        let mut middle = |a: u32, b: u32, positions: &mut Vec<Vec3>| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                positions.push((positions[a as usize] + positions[b as usize]).normalize());
+                positions.len() as u32 - 1
+            })
+        };
+        let mut finer = Vec::new();
+        for [a, b, c] in triangles {
+            let (ab, bc, ca) =
+                (middle(a, b, &mut positions), middle(b, c, &mut positions), middle(c, a, &mut positions));
+            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        triangles = finer;
+    }
+    let mut random = Random::new(77);
+    positions.iter_mut().for_each(|p| *p *= 1.0 + bump * (2.0 * random.unit() - 1.0));
+    (positions, triangles)
+}
