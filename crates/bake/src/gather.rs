@@ -82,7 +82,7 @@ impl Gatherer<'_> {
     /// Gathers for one receiver: a pure function of the scene, the settings and the receiver's index.
     pub(crate) fn gather(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Gathered {
         let above =
-            self.visibility && receiver.sound && self.world.tracer.anything_above(receiver.position, receiver.normal);
+            self.visibility && receiver.sound && self.world.tracer.anything_above(receiver.vertex, receiver.normal);
         if !above {
             return self.unshadowed(receiver);
         }

@@ -32,14 +32,17 @@ impl<'a> Monitor<'a> {
         self.report(stage, 0, total);
     }
 
-    /// Counts one receiver; false when the bake is to stop.
-    fn receiver_done(&self, stage: Stage, total: u64, rays: u64) -> bool {
+    /// Counts one receiver.
+    fn receiver_done(&self, stage: Stage, total: u64, rays: u64) {
         self.rays.fetch_add(rays, Ordering::Relaxed);
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         if done.is_multiple_of(REPORT) || done == total {
             self.report(stage, done, total);
         }
-        !self.cancelled.load(Ordering::Relaxed)
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
     }
 
     fn report(&self, stage: Stage, done: u64, total: u64) {
@@ -50,7 +53,7 @@ impl<'a> Monitor<'a> {
     }
 
     pub(crate) fn check(&self) -> Result<(), Error> {
-        if self.cancelled.load(Ordering::Relaxed) { Err(Error::Cancelled) } else { Ok(()) }
+        if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
     }
 }
 
@@ -90,12 +93,12 @@ pub(crate) fn gather_pass(
             .map_init(Worker::new, |worker, ids| {
                 let mut results = Vec::with_capacity(ids.len());
                 for &id in ids {
-                    let result = gatherer.gather(&receivers.list[id as usize], id, worker);
-                    let go_on = monitor.receiver_done(stage, total, result.visibility_rays + result.bounce_rays);
-                    results.push(result);
-                    if !go_on {
+                    if monitor.is_cancelled() {
                         break;
                     }
+                    let result = gatherer.gather(&receivers.list[id as usize], id, worker);
+                    monitor.receiver_done(stage, total, result.visibility_rays + result.bounce_rays);
+                    results.push(result);
                 }
                 (ids.to_vec(), results)
             })
@@ -147,6 +150,9 @@ pub(crate) fn bounce_pass(
             .map_init(Worker::new, |worker, chunk| {
                 let mut rows = vec![0.0; chunk.ids.len() * last.row_len()];
                 for ((k, &id), row) in chunk.ids.iter().enumerate().zip(rows.chunks_exact_mut(last.row_len())) {
+                    if monitor.is_cancelled() {
+                        break;
+                    }
                     let mut rays = 0;
                     match &chunk.seen {
                         Some(seen) => add_reflected(gatherer, receivers, seen.of_receiver(k), last, row),
@@ -157,9 +163,7 @@ pub(crate) fn bounce_pass(
                             add_reflected(gatherer, receivers, &again.hits, last, row);
                         }
                     }
-                    if !monitor.receiver_done(stage, total, rays) {
-                        break;
-                    }
+                    monitor.receiver_done(stage, total, rays);
                 }
                 rows
             })

@@ -35,8 +35,7 @@ impl Facts {
     /// Looks at every material once and at every receiver through the tree.
     pub(crate) fn gather(scene: &Scene, world: &World<'_>, receivers: &Receivers) -> Self {
         let fronts = &receivers.list[..receivers.permanent];
-        let shadowed =
-            fronts.par_iter().filter(|r| r.sound && world.tracer.anything_above(r.position, r.normal)).count();
+        let shadowed = fronts.par_iter().filter(|r| r.sound && world.tracer.anything_above(r.vertex, r.normal)).count();
         let names = |test: &dyn Fn(&Material) -> bool| -> Vec<String> {
             scene.materials.iter().filter(|m| test(m)).map(|m| m.name.clone()).collect()
         };

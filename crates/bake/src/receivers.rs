@@ -11,6 +11,8 @@ pub(crate) const NONE: u32 = u32::MAX;
 pub struct Receiver {
     /// World space, metres; drawn in from open borders, so that a corner between two meshes is seen from inside.
     pub position: Vec3,
+    /// The vertex itself, world space: what lies above its tangent plane can cast a shadow.
+    pub vertex: Vec3,
     /// Unit shading normal: the cosine is taken about it.
     pub normal: Vec3,
     /// Unit normal of the surface itself: rays start off along it.
@@ -83,6 +85,7 @@ impl Receivers {
             let geometric_normal = geometric.unwrap_or(normal);
             self.list.push(Receiver {
                 position: drawn_in(mesh.positions[vertex], faces.centre(vertex), geometric_normal),
+                vertex: mesh.positions[vertex],
                 normal,
                 geometric_normal,
                 sound: shading.is_some() || geometric.is_some(),

@@ -66,8 +66,8 @@ fn coefficients_match_quadrature() {
 #[test]
 fn error_asked_for_is_the_error_reached() {
     let ask = |error| Settings { quality: Quality::Error(error), ..fixed(5, Sampler::OwenSobol, 1, 0) };
-    let scene = grey("atrium", 0.5);
-    let truth = quiet(&scene, &fixed(5, Sampler::Fibonacci, 16384, 0));
+    let scene = grey("cornell-box", 0.5);
+    let truth = quiet(&scene, &fixed(5, Sampler::Fibonacci, 8192, 0));
     let open: f64 = 0.43;
     for error in [0.04f32, 0.02] {
         let prt = quiet(&scene, &ask(error));
