@@ -8,7 +8,7 @@ use scene::Scene;
 use std::ops::ControlFlow;
 
 /// A builtin scene with every surface grey, of albedo `a`.
-pub fn grey(name: &str, a: f32) -> Scene {
+pub(crate) fn grey(name: &str, a: f32) -> Scene {
     let mut scene = scene::builtin(name).unwrap_or_else(|| panic!("builtin:{name} exists"));
     for material in &mut scene.materials {
         material.base_color = Vec4::new(a, a, a, 1.0);
@@ -21,17 +21,17 @@ pub fn grey(name: &str, a: f32) -> Scene {
 }
 
 /// A fixed number of rays and bounces.
-pub fn fixed(bands: u32, sampler: Sampler, rays: u32, bounces: u32) -> Settings {
+pub(crate) fn fixed(bands: u32, sampler: Sampler, rays: u32, bounces: u32) -> Settings {
     Settings { bands, sampler, quality: Quality::Rays(rays), bounces: Bounces::Fixed(bounces), ..settings::standard() }
 }
 
 /// Bakes without showing progress.
-pub fn quiet(scene: &Scene, settings: &Settings) -> Prt {
+pub(crate) fn quiet(scene: &Scene, settings: &Settings) -> Prt {
     bake::bake(scene, settings, &|_| ControlFlow::Continue(())).expect("the scene bakes")
 }
 
 /// Radiance of every receiver under a sky of radiance 1: only the constant coefficient of the light is not zero.
-pub fn under_white(prt: &Prt) -> Vec<f64> {
+pub(crate) fn under_white(prt: &Prt) -> Vec<f64> {
     let t = &prt.transfer;
     let row = (t.bands * t.bands * t.channels) as usize;
     let light = (4.0 * std::f64::consts::PI).sqrt();
@@ -40,7 +40,7 @@ pub fn under_white(prt: &Prt) -> Vec<f64> {
 }
 
 /// Largest difference from one expected value, with the receiver where it stands.
-pub fn worst(values: &[f64], expected: f64) -> (f64, usize) {
+pub(crate) fn worst(values: &[f64], expected: f64) -> (f64, usize) {
     let differences = values.iter().map(|v| (v - expected).abs());
     differences.enumerate().map(|(i, d)| (d, i)).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })
 }
