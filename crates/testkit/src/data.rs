@@ -13,18 +13,13 @@ pub fn data_dir() -> Option<PathBuf> {
 }
 
 /// Prints that a test was skipped because the data is not there.
-#[expect(
-    clippy::print_stderr,
-    reason = "a skipped test must be seen in the test log"
-)]
+#[expect(clippy::print_stderr, reason = "a skipped test must be seen in the test log")]
 pub fn skip(what: &str) {
     eprintln!("skipped: {what} (no test data; set RELUME_TEST_DATA to its folder)");
 }
 
 fn checkout_root() -> Option<&'static Path> {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .ancestors()
-        .find(|folder| folder.join("Cargo.lock").is_file())
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().find(|folder| folder.join("Cargo.lock").is_file())
 }
 
 #[cfg(test)]
@@ -32,10 +27,6 @@ mod tests {
     #[test]
     fn checkout_root_holds_this_crate() {
         let root = super::checkout_root().expect("tests run inside the checkout");
-        assert!(
-            root.join("crates/testkit/src/data.rs").is_file(),
-            "{} is not the checkout",
-            root.display()
-        );
+        assert!(root.join("crates/testkit/src/data.rs").is_file(), "{} is not the checkout", root.display());
     }
 }

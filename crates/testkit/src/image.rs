@@ -29,28 +29,14 @@ pub fn mean_relative(image: &[[f32; 3]], reference: &[[f32; 3]]) -> f64 {
 #[must_use]
 pub fn max_difference(image: &[[f32; 3]], reference: &[[f32; 3]]) -> f64 {
     // f64::max would drop a NaN.
-    fold(image, reference, |worst, a, b| {
-        if (a - b).abs() <= worst {
-            worst
-        } else {
-            (a - b).abs() + worst * 0.0
-        }
-    })
-    .0
+    fold(image, reference, |worst, a, b| if (a - b).abs() <= worst { worst } else { (a - b).abs() + worst * 0.0 }).0
 }
 
-fn fold(
-    image: &[[f32; 3]],
-    reference: &[[f32; 3]],
-    step: impl Fn(f64, f64, f64) -> f64,
-) -> (f64, f64) {
+fn fold(image: &[[f32; 3]], reference: &[[f32; 3]], step: impl Fn(f64, f64, f64) -> f64) -> (f64, f64) {
     assert_eq!(image.len(), reference.len(), "pictures of different size");
     assert!(!image.is_empty(), "pictures without pixels");
     let pairs = image.as_flattened().iter().zip(reference.as_flattened());
-    (
-        pairs.fold(0.0, |sum, (&a, &b)| step(sum, f64::from(a), f64::from(b))),
-        (3 * image.len()) as f64,
-    )
+    (pairs.fold(0.0, |sum, (&a, &b)| step(sum, f64::from(a), f64::from(b))), (3 * image.len()) as f64)
 }
 
 #[cfg(test)]
@@ -64,26 +50,15 @@ mod tests {
     #[test]
     fn distances_of_one_wrong_channel() {
         assert_close!(rmse(&OFF, &GREY), (0.5625_f64 / 6.0).sqrt(), 1e-7, 0.0);
-        assert_close!(
-            relative_rmse(&OFF, &GREY),
-            (0.5625_f64 / 3.75).sqrt(),
-            1e-7,
-            0.0
-        );
+        assert_close!(relative_rmse(&OFF, &GREY), (0.5625_f64 / 3.75).sqrt(), 1e-7, 0.0);
         assert_close!(mean_relative(&OFF, &GREY), 0.75 / 4.5, 1e-7, 0.0);
         assert_close!(max_difference(&OFF, &GREY), 0.75, 0.0, 0.0);
     }
 
     #[test]
     fn nan_pixels_can_fail() {
-        for picture in [
-            [[f32::NAN, 0.0, 0.0], [1.0; 3]],
-            [[1.0; 3], [0.0, f32::NAN, 0.0]],
-        ] {
-            assert!(
-                max_difference(&picture, &GREY).is_nan(),
-                "a NaN must not vanish"
-            );
+        for picture in [[[f32::NAN, 0.0, 0.0], [1.0; 3]], [[1.0; 3], [0.0, f32::NAN, 0.0]]] {
+            assert!(max_difference(&picture, &GREY).is_nan(), "a NaN must not vanish");
             assert!(rmse(&picture, &GREY).is_nan(), "a NaN must not vanish");
         }
     }

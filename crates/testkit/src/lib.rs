@@ -36,10 +36,7 @@ mod tests {
     #[test]
     fn close_counts_both_tolerances() {
         assert!(super::close(1.0, 1.1, 0.1, 0.01), "within the sum of both");
-        assert!(
-            super::close(100.0, 101.0, 0.0, 0.01),
-            "within the relative part"
-        );
+        assert!(super::close(100.0, 101.0, 0.0, 0.01), "within the relative part");
     }
 
     #[test]
@@ -50,9 +47,6 @@ mod tests {
 
     #[test]
     fn close_to_nan_can_fail() {
-        assert!(
-            !super::close(f64::NAN, f64::NAN, 1.0, 1.0),
-            "NaN is close to nothing"
-        );
+        assert!(!super::close(f64::NAN, f64::NAN, 1.0, 1.0), "NaN is close to nothing");
     }
 }

@@ -29,10 +29,7 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (0.0, 1.0);
     for k in 1..=n {
         let k = k as f64;
-        (previous, current) = (
-            current,
-            ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k,
-        );
+        (previous, current) = (current, ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k);
     }
     (current, n as f64 * (x * current - previous) / (x * x - 1.0))
 }
@@ -68,24 +65,14 @@ mod tests {
     use crate::assert_close;
 
     fn moment(n: usize, power: i32) -> f64 {
-        gauss_legendre(n)
-            .iter()
-            .map(|(x, w)| w * x.powi(power))
-            .sum()
+        gauss_legendre(n).iter().map(|(x, w)| w * x.powi(power)).sum()
     }
 
     #[test]
     fn gauss_integrates_monomials() {
         for n in [1, 2, 5, 16, 64] {
             for k in 0..n as i32 {
-                assert_close!(
-                    moment(n, 2 * k),
-                    2.0 / (2 * k + 1) as f64,
-                    1e-13,
-                    0.0,
-                    "x^{} with {n} points",
-                    2 * k
-                );
+                assert_close!(moment(n, 2 * k), 2.0 / (2 * k + 1) as f64, 1e-13, 0.0, "x^{} with {n} points", 2 * k);
                 assert_close!(moment(n, 2 * k + 1), 0.0, 1e-13, 0.0);
             }
         }
@@ -93,32 +80,16 @@ mod tests {
 
     #[test]
     fn gauss_beyond_its_degree_can_fail() {
-        assert!(
-            (moment(3, 6) - 2.0 / 7.0).abs() > 1e-2,
-            "three points end at degree 5"
-        );
+        assert!((moment(3, 6) - 2.0 / 7.0).abs() > 1e-2, "three points end at degree 5");
     }
 
     #[test]
     fn sphere_integrates_products() {
-        let integral = |f: fn([f64; 3]) -> f64| {
-            sphere_quadrature(8)
-                .iter()
-                .map(|&(d, w)| w * f(d))
-                .sum::<f64>()
-        };
+        let integral = |f: fn([f64; 3]) -> f64| sphere_quadrature(8).iter().map(|&(d, w)| w * f(d)).sum::<f64>();
         assert_close!(integral(|_| 1.0), 4.0 * PI, 1e-12, 0.0);
-        assert_close!(
-            integral(|d| d[0] * d[0] * d[1] * d[1]),
-            4.0 * PI / 15.0,
-            1e-12,
-            0.0
-        );
+        assert_close!(integral(|d| d[0] * d[0] * d[1] * d[1]), 4.0 * PI / 15.0, 1e-12, 0.0);
         assert_close!(integral(|d| d[2].powi(4)), 4.0 * PI / 5.0, 1e-12, 0.0);
-        let cosine: f64 = band_quadrature(0.0, 1.0, 4)
-            .iter()
-            .map(|&(d, w)| w * d[2])
-            .sum();
+        let cosine: f64 = band_quadrature(0.0, 1.0, 4).iter().map(|&(d, w)| w * d[2]).sum();
         assert_close!(cosine, PI, 1e-12, 0.0);
     }
 }
