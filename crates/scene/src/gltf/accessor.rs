@@ -4,9 +4,11 @@ use ::gltf::json::accessor::{Accessor, ComponentType, Type};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Index, buffer};
 
-use super::MAX_ELEMENTS;
 use super::document::Document;
 use crate::Error;
+
+/// Most elements of an accessor without data, all zeros: the only one whose size no bytes of the file justify.
+const MAX_ZEROS: usize = 1 << 20;
 
 /// Where the elements of an accessor lie in a buffer view.
 struct Layout<'a> {
@@ -85,9 +87,13 @@ impl Document<'_> {
                 let layout = self.layout(&object(index), view, offset, count, size)?;
                 (0..count).map(|i| read(&layout.bytes[i * layout.stride..])).collect()
             }
-            // All zeros: the only accessor whose size no bytes justify.
-            None if count <= MAX_ELEMENTS => vec![read(&[0; 64]); count],
-            None => return Err(self.invalid(object(index), format!("{count} elements without data"))),
+            None if count <= MAX_ZEROS => vec![read(&[0; 64]); count],
+            None => {
+                return Err(self.invalid(
+                    object(index),
+                    format!("{count} elements without a bufferView; at most {MAX_ZEROS} may be zeros"),
+                ));
+            }
         };
         if accessor.sparse.is_some() {
             self.lay_sparse(index, size, &mut values, read)?;

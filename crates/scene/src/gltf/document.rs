@@ -48,10 +48,9 @@ impl<'a> Document<'a> {
         folder: &Folder,
         report: &mut Report,
     ) -> Result<Self, Error> {
-        let mut root: Root =
-            ::gltf::json::deserialize::from_slice(json).map_err(|error| not_json(file, json, &error))?;
+        let root: Root = ::gltf::json::deserialize::from_slice(json).map_err(|error| not_json(file, json, &error))?;
         check_version(file, &root.asset.version)?;
-        check_extensions(file, &mut root, report)?;
+        check_extensions(file, &root, report)?;
         check_attributes(file, &root)?;
         validate(file, &root)?;
         let buffers = fetch_buffers(file, &root, binary, folder)?;
@@ -100,7 +99,7 @@ fn check_version(file: &Path, version: &str) -> Result<(), Error> {
 }
 
 /// Refuses what is required and not done here, by name; warns of what is only used.
-fn check_extensions(file: &Path, root: &mut Root, report: &mut Report) -> Result<(), Error> {
+fn check_extensions(file: &Path, root: &Root, report: &mut Report) -> Result<(), Error> {
     let known = |name: &str| SUPPORTED.contains(&name);
     if let Some(name) = root.extensions_required.iter().find(|name| !known(name)) {
         let hint = HINTS.iter().find(|(n, _)| n == name).map_or("save the scene without it", |(_, hint)| hint);
@@ -109,8 +108,6 @@ fn check_extensions(file: &Path, root: &mut Root, report: &mut Report) -> Result
     for name in root.extensions_used.iter().filter(|name| !known(name)) {
         warn(report, "extensionsUsed", format!("{name} is not supported and was ignored"));
     }
-    // Checked above, and better than the crate's own list, which lacks extensions that it can read.
-    root.extensions_required.clear();
     Ok(())
 }
 
@@ -133,7 +130,13 @@ fn check_attributes(file: &Path, root: &Root) -> Result<(), Error> {
 fn validate(file: &Path, root: &Root) -> Result<(), Error> {
     let mut complaints = Vec::new();
     root.validate(root, JsonPath::new, &mut |path, fault| complaints.push((path().to_string(), fault)));
-    complaints.retain(|(path, fault)| *fault != Fault::Missing || !is_dispensable(path));
+    complaints.retain(|(path, fault)| match fault {
+        Fault::Missing => !is_dispensable(path),
+        // Attributes that the crate does not know, such as an application's own, are not read.
+        Fault::Invalid => !path.ends_with("[\"<invalid semantic name>\"]"),
+        Fault::Unsupported => !path.starts_with("extensionsRequired"),
+        _ => true,
+    });
     let Some((path, first)) = complaints.first() else { return Ok(()) };
     let more = match complaints.len() - 1 {
         0 => String::new(),
