@@ -25,7 +25,8 @@ impl Facet {
         let sign = (raw[0] + raw[1] + raw[2]).signum();
         let inside = raw.map(|w| (w * sign).max(0.0));
         let sum = inside[0] + inside[1] + inside[2];
-        if sum > 0.0 { inside.map(|w| (w / sum) as f32) } else { [1.0 / 3.0; 3] }
+        let scale = 1.0 / sum;
+        if scale.is_finite() { inside.map(|w| (w * scale) as f32) } else { [1.0 / 3.0; 3] }
     }
 
     /// Coefficients (k) of the inverse depth 1/w = k·(x, y, 1), or `None` where the plane passes through the eye.

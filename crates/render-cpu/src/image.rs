@@ -21,8 +21,8 @@ impl Image {
     /// Adds the display form to a linear picture.
     pub(crate) fn new(width: u32, height: u32, linear: Vec<[f32; 3]>, tonemap: Tonemap, quantiser: &Quantiser) -> Self {
         let encode = |pixel: &[f32; 3]| {
-            let [r, g, b] = pixel.map(|x| quantiser.byte(curve(tonemap, x)));
-            [r, g, b, 255]
+            let byte = |x: f32| quantiser.byte(curve(tonemap, x));
+            [byte(pixel[0]), byte(pixel[1]), byte(pixel[2]), 255]
         };
         let display = linear.par_iter().map(encode).collect();
         Self { width, height, linear, display }

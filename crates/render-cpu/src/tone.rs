@@ -30,22 +30,38 @@ pub fn srgb_decode(value: f64) -> f64 {
     if value <= 0.040_45 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
 }
 
-/// Rounds linear display values to sRGB bytes without a power per pixel.
+/// Cells of the quantiser's table: narrower than any byte, so that at most one threshold lies in each.
+const CELLS: usize = 4096;
+
+/// Rounds linear display values to sRGB bytes without a power or a search per pixel.
 #[derive(Debug, Clone)]
 pub(crate) struct Quantiser {
-    /// Least linear value of each byte but 0.
-    thresholds: Vec<f32>,
+    /// Least linear value of the byte after each; infinite after the last.
+    next: [f32; 256],
+    /// Byte of the least value in each cell; the last cell holds 1 only.
+    first: Vec<u8>,
 }
 
 impl Quantiser {
     pub(crate) fn new() -> Self {
-        Self { thresholds: (1..=255).map(|byte| srgb_decode((f64::from(byte) - 0.5) / 255.0) as f32).collect() }
+        let mut next = std::array::from_fn(|byte| at_least(srgb_decode((byte as f64 + 0.5) / 255.0)));
+        next[255] = f32::INFINITY;
+        let least = |cell: usize| cell as f32 / CELLS as f32;
+        let first = (0..=CELLS).map(|cell| next.partition_point(|&next| next <= least(cell)) as u8).collect();
+        Self { next, first }
     }
 
     /// The byte nearest to the sRGB value of a linear value in [0, 1].
     pub(crate) fn byte(&self, linear: f32) -> u8 {
-        self.thresholds.partition_point(|&least| least <= linear) as u8
+        let byte = self.first[(linear * CELLS as f32) as usize];
+        byte + u8::from(linear >= self.next[usize::from(byte)])
     }
+}
+
+/// The least f32 that is not below `x`.
+fn at_least(x: f64) -> f32 {
+    let rounded = x as f32;
+    if f64::from(rounded) < x { rounded.next_up() } else { rounded }
 }
 
 #[cfg(test)]
@@ -55,8 +71,8 @@ mod tests {
     #[test]
     fn bytes_are_the_rounded_srgb_values() {
         let quantiser = Quantiser::new();
-        for i in 0..=10_000 {
-            let linear = i as f32 / 10_000.0;
+        for i in 0..=1_000_000 {
+            let linear = i as f32 / 1_000_000.0;
             let exact = (255.0 * srgb_encode(f64::from(linear)) + 0.5).floor();
             assert_eq!(f64::from(quantiser.byte(linear)), exact, "at {linear}");
         }

@@ -17,6 +17,9 @@ pub(crate) struct View {
     up: DVec3,
     forward: DVec3,
     tangent: DVec2,
+    /// Distance of neighbouring samples on the picture, and the place of the first one.
+    step: DVec2,
+    first: DVec2,
     /// Samples per row and column.
     pub(crate) samples: [u32; 2],
     /// Nothing nearer is drawn.
@@ -31,13 +34,17 @@ impl View {
         let tangent = libm::tan(f64::from(camera.vertical_fov) / 2.0);
         let aspect = f64::from(frame.width) / f64::from(frame.height);
         let extent = if diagonal > 0.0 && diagonal.is_finite() { diagonal } else { 1.0 };
+        let samples = [frame.width * frame.supersample, frame.height * frame.supersample];
+        let step = DVec2::new(2.0, -2.0) / DVec2::from(samples.map(f64::from));
         Self {
+            step,
+            first: DVec2::new(-1.0, 1.0) + 0.5 * step,
             eye: vector(camera.eye),
             right,
             up,
             forward: -back,
             tangent: DVec2::new(tangent * aspect, tangent),
-            samples: [frame.width * frame.supersample, frame.height * frame.supersample],
+            samples,
             near: NEAR_SHARE * extent,
         }
     }
@@ -50,8 +57,7 @@ impl View {
 
     /// Where the centre of sample (column, row) lies on the picture: [-1, 1], y up.
     pub(crate) fn centre(&self, column: u32, row: u32) -> DVec2 {
-        let [width, height] = self.samples.map(f64::from);
-        DVec2::new(2.0 * (f64::from(column) + 0.5) / width - 1.0, 1.0 - 2.0 * (f64::from(row) + 0.5) / height)
+        self.first + self.step * DVec2::new(f64::from(column), f64::from(row))
     }
 
     /// Column and row, with fractions, of a point in projective space before the eye.
