@@ -1,2 +1,66 @@
-//! The command line.
-fn main() {}
+//! The command line: parse, call one library function, print.
+
+mod arguments;
+mod bake;
+mod console;
+mod draw;
+mod export;
+mod inspect;
+mod interrupt;
+mod lens;
+mod light;
+mod list;
+mod output;
+mod picture;
+mod plan;
+mod reference;
+mod render;
+mod settings;
+mod source;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use console::Console;
+use std::process::ExitCode;
+
+/// Wrong usage that only shows when a file is open; ends with exit code 2, as clap's own complaints do.
+#[derive(Debug)]
+struct Usage(String);
+
+impl std::fmt::Display for Usage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let console = Console::new(arguments.quiet, arguments.verbose);
+    match run(&arguments, &console) {
+        Ok(()) => ExitCode::SUCCESS,
+        // A reader that has seen enough, such as `head`, is no failure.
+        Err(error) if console::is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            console.error(&error);
+            ExitCode::from(if error.is::<Usage>() { 2 } else { 1 })
+        }
+    }
+}
+
+fn run(arguments: &Arguments, console: &Console) -> anyhow::Result<()> {
+    if let Some(threads) = arguments.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
+    }
+    match &arguments.command {
+        Command::Plan(options) => plan::run(options, console),
+        Command::Bake(options) => bake::run(options, console),
+        Command::Render(options) => render::run(options, console),
+        Command::Reference(options) => reference::run(options, console),
+        Command::Inspect(options) => inspect::run(options, console),
+        Command::Export(options) => export::run(options, console),
+        Command::Light(options) => light::run(options, console),
+        Command::List => list::run(console),
+    }
+}

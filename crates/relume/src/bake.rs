@@ -1,0 +1,86 @@
+//! `relume bake`: a scene becomes a `.prt` file.
+
+use crate::console::Console;
+use crate::settings::BakeOptions;
+use crate::source::SceneOptions;
+use crate::{Usage, interrupt, output};
+use anyhow::{Context, Result};
+use coeff_io::{Prt, Quality};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  relume bake builtin:atrium -o atrium.prt
+  relume bake house.glb -o house.prt --bands 6 --error 0.005
+  relume bake scan.obj -o scan.prt --rays 256 --bounces 0 --memory 2G
+
+Ctrl-C ends a bake; the file is written when all is done, never in part.";
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    #[command(flatten)]
+    scene: SceneOptions,
+    /// The file to write.
+    #[arg(short, long, value_name = "F.prt")]
+    output: PathBuf,
+    #[command(flatten)]
+    bake: BakeOptions,
+}
+
+pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
+    let settings = options.bake.settings()?;
+    output::check(&options.output)?;
+    let scene = options.scene.load(console)?;
+    interrupt::watch()?;
+    let began = Instant::now();
+    let prt = {
+        let progress = console.progress();
+        bake::bake(&scene, &settings, &|now| {
+            progress.set(&now.stage.to_string(), now.done, now.total);
+            interrupt::flow()
+        })
+    };
+    let prt = prt.map_err(fault)?;
+    let took = began.elapsed();
+    prt.write(&options.output).with_context(|| format!("cannot write {}", options.output.display()))?;
+    report(&prt, took, options, console);
+    Ok(())
+}
+
+/// A setting out of range is wrong usage; everything else is a failure.
+pub(crate) fn fault(error: bake::Error) -> anyhow::Error {
+    match error {
+        bake::Error::Setting { .. } => Usage(error.to_string()).into(),
+        other => other.into(),
+    }
+}
+
+fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
+    let (achieved, receivers) = (&prt.achieved, prt.geometry.positions.len());
+    let rays = achieved.visibility_rays + achieved.bounce_rays;
+    let seconds = took.as_secs_f64();
+    console.notice(&format!(
+        "baked {receivers} receivers in {seconds:.1} s: {rays} rays ({:.2} million/s), {} bounces",
+        rays as f64 / seconds.max(1e-9) * 1e-6,
+        achieved.bounces
+    ));
+    console.notice(&format!("relative error: {}", error(prt.settings.quality, achieved.error)));
+    let repairs = achieved.repairs;
+    if repairs.inside + repairs.bad_normals > 0 {
+        let (inside, normals) = (repairs.inside, repairs.bad_normals);
+        let left = repairs.unrepaired;
+        console.notice(&format!(
+            "warning: {inside} vertices inside geometry, {normals} with bad normals; repaired from neighbours but for {left}"
+        ));
+    }
+    console.notice(&format!("wrote {}", options.output.display()));
+}
+
+/// The achieved error in words; a fixed number of rays is traced without an estimate.
+pub(crate) fn error(quality: Quality, [median, most, worst]: [f32; 3]) -> String {
+    match quality {
+        Quality::Rays(rays) if worst == 0.0 => format!("not estimated at a fixed number of {rays} rays"),
+        _ => format!("median {median:.4}, 95% below {most:.4}, worst {worst:.4}"),
+    }
+}

@@ -1,0 +1,119 @@
+//! `relume inspect`: what a baked file holds, and whether it is sound.
+
+use crate::console::Console;
+use anyhow::{Context, Result, bail};
+use coeff_io::{Chunk, Inspection, Kind};
+use serde_json::json;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  relume inspect atrium.prt
+  relume inspect atrium.prt --json | jq .header.achieved
+
+Fails when a checksum is wrong or the file contradicts itself.";
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// The baked file.
+    #[arg(value_name = "F.prt")]
+    file: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
+    let path = &options.file;
+    let about = || format!("{}", path.display());
+    let seen = coeff_io::inspect(path).with_context(about)?;
+    let sums = coeff_io::check(path, &seen.chunks).with_context(about)?;
+    let text = if options.json { as_json(&seen, &sums) } else { as_text(&seen, &sums)? };
+    console.print(&text)?;
+    let damaged = seen.chunks.iter().zip(&sums).filter(|(chunk, sum)| chunk.crc32 != **sum);
+    let damaged: Vec<String> = damaged.map(|(chunk, _)| chunk.kind.to_string()).collect();
+    if !damaged.is_empty() {
+        bail!("{}: damaged in {}: get the file again or bake anew", path.display(), damaged.join(", "));
+    }
+    // Sound bytes can still contradict each other.
+    coeff_io::Prt::read(path).with_context(about)?;
+    Ok(())
+}
+
+fn as_json(seen: &Inspection, sums: &[u32]) -> String {
+    let chunk = |(chunk, sum): (&Chunk, &u32)| {
+        json!({
+            "kind": chunk.kind.to_string(), "index": chunk.index, "offset": chunk.offset, "length": chunk.length,
+            "crc32": format!("{:08x}", chunk.crc32), "sound": chunk.crc32 == *sum,
+        })
+    };
+    let value = json!({
+        "version": seen.version,
+        "file_length": seen.file_length,
+        "vertices": vertices(seen),
+        "triangles": elements(seen, Kind::Triangles, 12),
+        "chunks": seen.chunks.iter().zip(sums).map(chunk).collect::<Vec<_>>(),
+        "header": seen.header,
+    });
+    format!("{value:#}")
+}
+
+fn elements(seen: &Inspection, kind: Kind, size: u64) -> u64 {
+    seen.chunks.iter().filter(|chunk| chunk.kind == kind).map(|chunk| chunk.length / size).sum()
+}
+
+fn vertices(seen: &Inspection) -> u64 {
+    elements(seen, Kind::Positions, 12)
+}
+
+fn as_text(seen: &Inspection, sums: &[u32]) -> Result<String> {
+    let mut text = String::new();
+    write_header(&mut text, seen)?;
+    writeln!(text, "\nplan")?;
+    for row in &seen.header.plan.rows {
+        let simulate = if row.simulate { "yes" } else { "no" };
+        writeln!(text, "  {:<16} {simulate:<4} {}", format!("{:?}", row.effect), row.reason)?;
+    }
+    writeln!(text, "\nchunks           offset        bytes  crc32")?;
+    for (chunk, sum) in seen.chunks.iter().zip(sums) {
+        let name = if chunk.kind == Kind::Picture {
+            format!("{} {}", chunk.kind, chunk.index)
+        } else {
+            chunk.kind.to_string()
+        };
+        let state = if chunk.crc32 == *sum { "" } else { "  DAMAGED" };
+        writeln!(text, "  {name:<9} {:>12} {:>12}  {:08x}{state}", chunk.offset, chunk.length, chunk.crc32)?;
+    }
+    Ok(text)
+}
+
+fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
+    let header = &seen.header;
+    let (settings, achieved) = (&header.settings, &header.achieved);
+    let mut row = |name: &str, value: String| writeln!(text, "{name:<16} {value}");
+    row("format", format!("version {}, {} bytes, written by {}", seen.version, seen.file_length, header.generator))?;
+    row("convention", header.convention.clone())?;
+    row("scene", header.scene.clone())?;
+    let (meshes, materials, textures) = (header.meshes.len(), header.materials.len(), header.textures.len());
+    row(
+        "geometry",
+        format!("{} vertices, {} triangles, {meshes} meshes", vertices(seen), elements(seen, Kind::Triangles, 12)),
+    )?;
+    row("surfaces", format!("{materials} materials, {textures} textures"))?;
+    row("cameras", header.cameras.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "))?;
+    row("transfer", format!("{} bands, {} channel(s)", header.bands, header.channels))?;
+    row(
+        "asked for",
+        format!("{:?}, bounces {:?}, effects {:?}", settings.quality, settings.bounces, settings.effects),
+    )?;
+    row("sampler", format!("{:?}, seed {}, memory {} bytes", settings.sampler, settings.seed, settings.memory))?;
+    let worst = achieved.worst_receiver;
+    row("error", format!("{}; receiver {worst} is worst", crate::bake::error(settings.quality, achieved.error)))?;
+    row("rays", format!("{} visibility, {} bounce", achieved.visibility_rays, achieved.bounce_rays))?;
+    row("bounces", format!("{}, which changed {:?}", achieved.bounces, achieved.bounce_changes))?;
+    let repairs = achieved.repairs;
+    let (inside, normals) = (repairs.inside, repairs.bad_normals);
+    row("repairs", format!("{inside} inside geometry, {normals} bad normals, {} not repaired", repairs.unrepaired))?;
+    Ok(())
+}

@@ -1,0 +1,129 @@
+//! `relume reference`: the ground truth, by path tracing.
+
+use crate::console::Console;
+use crate::lens::{self, Lens};
+use crate::picture::{self, DisplayOptions, Size, Target};
+use crate::source::{self, ProbeOptions, SceneOptions};
+use crate::{interrupt, output, settings};
+use anyhow::{Context, Result, ensure};
+use coeff_io::Bounces;
+use glam::Vec3;
+use probe_io::Environment;
+use reference::{Light, Picture, Settings, World};
+use sh_math::Bands;
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  relume reference builtin:cornell-box --probe builtin:sky -o truth.exr
+  relume reference house.glb --probe kitchen.hdr --spp 1024 --size 480x270 -o truth.exr
+  relume reference house.glb --probe kitchen.hdr --light bands:5 -o what-a-bake-should-give.exr
+
+`--light bands:N` lights the scene with what N bands hold of the probe: a bake of N bands should give the same picture,
+but for noise and for what lies between vertices.";
+
+/// Columns of the picture that stands for band-limited light: 16 bands change little over one of its pixels.
+const LIGHT_WIDTH: usize = 512;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    #[command(flatten)]
+    scene: SceneOptions,
+    #[command(flatten)]
+    probe: ProbeOptions,
+    /// The picture to write: .exr for linear radiance, .png for the display.
+    #[arg(short, long, value_name = "FILE", value_parser = picture::target)]
+    output: Target,
+    /// Paths per pixel.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    spp: u32,
+    /// The light: full, or what N bands hold of it.
+    #[arg(long, value_name = "full|bands:N", default_value = "full", value_parser = light)]
+    light: Truth,
+    /// How often light may bounce: a number, or auto for until paths end by themselves.
+    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = settings::bounces)]
+    bounces: Bounces,
+    /// Columns and rows.
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size)]
+    size: Size,
+    /// The view: the name of a camera, or eye x,y,z, target x,y,z and vertical angle of view in degrees.
+    #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true)]
+    camera: Option<Lens>,
+    /// Seed of everything random.
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    display: DisplayOptions,
+}
+
+/// Which light the truth is about.
+#[derive(Debug, Clone, Copy)]
+enum Truth {
+    Full,
+    Bands(Bands),
+}
+
+fn light(text: &str) -> Result<Truth, String> {
+    match text.split_once(':') {
+        None if text == "full" => Ok(Truth::Full),
+        Some(("bands", count)) => source::bands(count).map(Truth::Bands),
+        _ => Err("give full or bands:N".into()),
+    }
+}
+
+pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
+    output::check(&options.output.path)?;
+    let scene = options.scene.load(console)?;
+    let camera = lens::of_scene(options.camera.as_ref(), &scene)?;
+    let environment = options.probe.load(console)?;
+    let light = match options.light {
+        Truth::Full => Light::new(&environment),
+        Truth::Bands(bands) => band_limited(bands, &environment)?,
+    };
+    let max_bounces = match options.bounces {
+        Bounces::Auto => None,
+        Bounces::Fixed(count) => Some(count),
+    };
+    let settings = Settings { samples: options.spp, seed: options.seed, max_bounces };
+    interrupt::watch()?;
+    let picture = {
+        let progress = console.progress();
+        let rows = options.size.height;
+        reference::render(&World::new(&scene), &light, &camera, [options.size.width, rows], &settings, &|share| {
+            progress.set("rows", (share * rows as f32).round() as u64, u64::from(rows));
+            interrupt::flow()
+        })
+    };
+    let mut picture = picture.context("the reference was cancelled; no file was written")?;
+    let noise = noise(&picture);
+    options.display.expose(&mut picture.pixels);
+    options.output.write(options.size, &picture.pixels, &options.display.display(&picture.pixels))?;
+    console.notice(&format!(
+        "wrote {}; noise {:.2}% of the mean radiance",
+        options.output.path.display(),
+        100.0 * noise
+    ));
+    Ok(())
+}
+
+/// The light that `bands` bands hold; it may be negative in places. The view behind the scene stays as it is.
+fn band_limited(bands: Bands, environment: &Environment) -> Result<Light> {
+    let coefficients = sh_math::project(bands, environment.samples());
+    let (width, height) = (LIGHT_WIDTH, LIGHT_WIDTH / 2);
+    let pixel = |i: usize| {
+        let phi = std::f64::consts::TAU * (((i % width) as f64 + 0.5) / width as f64 - 0.5);
+        let theta = std::f64::consts::PI * ((i / width) as f64 + 0.5) / height as f64;
+        let direction = [-phi.sin() * theta.sin(), theta.cos(), phi.cos() * theta.sin()];
+        coefficients.reconstruct(Vec3::from(direction.map(|v| v as f32)))
+    };
+    let pixels: Vec<[f32; 3]> = (0..width * height).map(pixel).collect();
+    ensure!(pixels.as_flattened().iter().all(|v| v.is_finite()), "the light is too bright for {} bands", bands.count());
+    let light = Light::from_equirect(width, pixels).context("the light of few bands is no light")?;
+    Ok(light.with_sky(environment))
+}
+
+/// Mean standard error over mean radiance.
+fn noise(picture: &Picture) -> f64 {
+    let sum = |pixels: &[[f32; 3]]| pixels.as_flattened().iter().map(|v| f64::from(*v)).sum::<f64>();
+    let radiance = sum(&picture.pixels);
+    if radiance > 0.0 { sum(&picture.std_error) / radiance } else { 0.0 }
+}

@@ -1,0 +1,153 @@
+//! `relume render`: a baked file under a light probe becomes a picture.
+
+use crate::console::Console;
+use crate::draw::{Backend, Drawer};
+use crate::lens::{self, Lens};
+use crate::output;
+use crate::picture::{self, DisplayOptions, Size, Target};
+use crate::source::{self, ProbeOptions};
+use anyhow::Result;
+use glam::{EulerRot, Quat};
+use render_cpu::Frame;
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  relume render atrium.prt --probe builtin:sky -o atrium.png
+  relume render atrium.prt --probe kitchen.hdr --rotate 90,0,0 --tonemap filmic -o kitchen.png
+  relume render atrium.prt --probe kitchen.hdr --camera 0,1.6,5,0,1,0,45 -o linear.exr
+  relume render atrium.prt --probe kitchen.hdr --frames 36 -o turn.png
+
+The last writes turn-0000.png to turn-0035.png, the light turned by 10 degrees each, and tells the time per frame.";
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// The baked file.
+    #[arg(value_name = "F.prt")]
+    file: PathBuf,
+    #[command(flatten)]
+    probe: ProbeOptions,
+    /// The picture to write: .png for the display, .exr for linear radiance.
+    #[arg(short, long, value_name = "FILE", value_parser = picture::target)]
+    output: Target,
+    /// Columns and rows.
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size)]
+    size: Size,
+    /// Turns the light, in degrees: yaw about the upward axis, then pitch about x, then roll about z.
+    #[arg(long, value_name = "YAW,PITCH,ROLL", default_value = "0,0,0", value_parser = rotation, allow_hyphen_values = true)]
+    rotate: Quat,
+    /// The view: the name of a camera, or eye x,y,z, target x,y,z and vertical angle of view in degrees.
+    #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true)]
+    camera: Option<Lens>,
+    /// Who draws; auto takes the CPU where there is no GPU.
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    backend: Backend,
+    #[command(flatten)]
+    display: DisplayOptions,
+    /// Share of glow around bright places, 0 to 1.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
+    bloom: f32,
+    /// Samples along each side of a pixel, 1 to 8.
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    supersample: u32,
+    /// What is drawn behind the scene.
+    #[arg(long, value_enum, default_value_t = Background::Sky)]
+    background: Background,
+    /// Draws N pictures, the light turned by 360/N degrees from one to the next.
+    #[arg(long, value_name = "N")]
+    frames: Option<NonZeroU32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Background {
+    /// The light probe.
+    Sky,
+    /// Nothing.
+    Black,
+}
+
+pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
+    output::check(&options.output.path)?;
+    let prt = source::prt(&options.file)?;
+    let frame = Frame {
+        camera: lens::of_prt(options.camera.as_ref(), &prt.cameras)?,
+        width: options.size.width,
+        height: options.size.height,
+        rotation: options.rotate,
+        exposure_ev: options.display.exposure,
+        tonemap: options.display.tonemap(),
+        bloom: options.bloom,
+        supersample: options.supersample,
+        sky: options.background == Background::Sky,
+    };
+    frame.check().map_err(|error| crate::Usage(error.to_string()))?;
+    let environment = options.probe.load(console)?;
+    let mut drawer = Drawer::open(options.backend, &prt, &environment, console)?;
+    match options.frames {
+        Some(count) => draw_turn(options, &frame, count.get(), &mut drawer, console),
+        None => draw_one(options, &frame, &mut drawer, console),
+    }
+}
+
+fn draw_one(options: &Options, frame: &Frame, drawer: &mut Drawer<'_>, console: &Console) -> Result<()> {
+    let began = Instant::now();
+    let image = drawer.draw(frame, console)?;
+    console.detail(&format!("drew in {:.1} ms", milliseconds(began.elapsed())));
+    options.output.write(options.size, &image.linear, &image.display)?;
+    console.notice(&format!("wrote {}", options.output.path.display()));
+    Ok(())
+}
+
+/// Draws frame after frame under a light that makes one full turn.
+fn draw_turn(options: &Options, frame: &Frame, count: u32, drawer: &mut Drawer<'_>, console: &Console) -> Result<()> {
+    let mut times = Vec::with_capacity(count.min(100_000) as usize);
+    for number in 0..count {
+        let turn = Quat::from_rotation_y(std::f32::consts::TAU * number as f32 / count as f32);
+        let frame = Frame { rotation: turn * frame.rotation, ..frame.clone() };
+        let on_gpu = drawer.time(&frame)?;
+        let began = Instant::now();
+        let image = drawer.draw(&frame, console)?;
+        times.push(milliseconds(on_gpu.unwrap_or_else(|| began.elapsed())));
+        options.output.numbered(number).write(options.size, &image.linear, &image.display)?;
+    }
+    // The first frame also builds what the others use again.
+    let first = times[0];
+    times.sort_by(f64::total_cmp);
+    let (least, median, most) = (times[0], times[times.len() / 2], times[times.len() - 1]);
+    console.print(&format!(
+        "{count} frames: median {median:.2} ms, least {least:.2}, most {most:.2}, the first {first:.2}"
+    ))
+}
+
+fn milliseconds(took: Duration) -> f64 {
+    took.as_secs_f64() * 1e3
+}
+
+/// Parses `YAW,PITCH,ROLL` in degrees into the rotation from light to world.
+fn rotation(text: &str) -> Result<Quat, String> {
+    let angles: Option<Vec<f32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    match angles.as_deref() {
+        Some(&[yaw, pitch, roll]) if [yaw, pitch, roll].iter().all(|v| v.is_finite()) => {
+            Ok(Quat::from_euler(EulerRot::YXZ, yaw.to_radians(), pitch.to_radians(), roll.to_radians()))
+        }
+        _ => Err("give three angles in degrees, such as 90,0,0".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// A quarter turn of yaw brings the light from ahead (+z) to +x, as seen from above counter-clockwise.
+    #[test]
+    fn rotations_turn_the_way_that_the_help_says() {
+        let turned = |text: &str, from: Vec3| rotation(text).unwrap() * from;
+        assert!(turned("90,0,0", Vec3::Z).distance(Vec3::X) < 1e-6);
+        assert!(turned("0,90,0", Vec3::Y).distance(Vec3::Z) < 1e-6);
+        assert!(turned("0,0,90", Vec3::X).distance(Vec3::Y) < 1e-6);
+        assert!(rotation("1,2").is_err() && rotation("a,b,c").is_err() && rotation("0,0,inf").is_err());
+    }
+}

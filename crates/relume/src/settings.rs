@@ -1,0 +1,145 @@
+//! The options that say how to bake, and the settings that they stand for.
+
+use crate::Usage;
+use anyhow::Result;
+use bake::settings;
+use coeff_io::{Bounces, Effect, Effects, Quality, Sampler, Settings};
+
+/// How to bake, as typed.
+#[derive(Debug, clap::Args)]
+pub(crate) struct BakeOptions {
+    /// Number of bands: n bands are n*n coefficients per receiver.
+    #[arg(long, value_name = "N", default_value_t = settings::standard().bands)]
+    bands: u32,
+    /// Fixed number of rays per receiver.
+    #[arg(long, value_name = "N", conflicts_with = "error")]
+    rays: Option<u32>,
+    /// Relative error of each receiver's transfer to reach (0.01 where neither is given).
+    #[arg(long, value_name = "E")]
+    error: Option<f32>,
+    /// How often light may bounce: a number, or auto for until it changes nothing.
+    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = bounces)]
+    bounces: Bounces,
+    /// Effects that may be simulated: auto for those that the scene calls for, all, none, or a list of visibility,
+    /// interreflection, color, masks, specular, normal-maps, emission, transmission.
+    #[arg(long, value_name = "auto|all|none|LIST", default_value = "auto", value_parser = effects)]
+    effects: Effects,
+    /// Where coefficients are stored.
+    #[arg(long, value_enum, default_value_t = Storage::Auto)]
+    storage: Storage,
+    /// Seed of everything random.
+    #[arg(long, value_name = "S", default_value_t = settings::standard().seed)]
+    seed: u64,
+    /// Which sequence the rays follow; only owen-sobol can go on until an error is reached.
+    #[arg(long, value_enum, default_value_t = SamplerName::OwenSobol)]
+    sampler: SamplerName,
+    /// Memory that coefficients and caches may take; K, M and G stand for powers of 1024.
+    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    memory: Option<u64>,
+}
+
+/// Where coefficients are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Storage {
+    /// What suits the scene; at the vertices for now.
+    Auto,
+    /// At the vertices.
+    Vertex,
+    /// In textures (not available yet).
+    Texture,
+}
+
+/// The sequences by the names that are typed.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum SamplerName {
+    /// Owen-scrambled Sobol points.
+    OwenSobol,
+    /// Fibonacci lattice.
+    Fibonacci,
+    /// Jittered grid over the sphere.
+    Stratified,
+}
+
+impl BakeOptions {
+    /// The settings that these options stand for.
+    pub(crate) fn settings(&self) -> Result<Settings> {
+        if self.storage == Storage::Texture {
+            let what = "--storage texture is not available yet: use --storage vertex";
+            return Err(Usage(what.into()).into());
+        }
+        let standard = settings::standard();
+        let settings = Settings {
+            bands: self.bands,
+            quality: self.rays.map(Quality::Rays).or(self.error.map(Quality::Error)).unwrap_or(standard.quality),
+            bounces: self.bounces,
+            effects: self.effects.clone(),
+            sampler: match self.sampler {
+                SamplerName::OwenSobol => Sampler::OwenSobol,
+                SamplerName::Fibonacci => Sampler::Fibonacci,
+                SamplerName::Stratified => Sampler::Stratified,
+            },
+            seed: self.seed,
+            memory: self.memory.unwrap_or(standard.memory),
+        };
+        settings::check(&settings).map_err(|error| Usage(error.to_string()))?;
+        Ok(settings)
+    }
+}
+
+/// Parses a number of bounces; the reference takes the same words.
+pub(crate) fn bounces(text: &str) -> Result<Bounces, String> {
+    match text {
+        "auto" => Ok(Bounces::Auto),
+        number => number.parse().map(Bounces::Fixed).map_err(|_| "give a number or auto".into()),
+    }
+}
+
+fn effects(text: &str) -> Result<Effects, String> {
+    match text {
+        "auto" => Ok(Effects::Auto),
+        "all" => Ok(Effects::All),
+        "none" => Ok(Effects::Only(Vec::new())),
+        list => list.split(',').map(effect).collect::<Result<_, _>>().map(Effects::Only),
+    }
+}
+
+fn effect(name: &str) -> Result<Effect, String> {
+    Ok(match name {
+        "visibility" => Effect::Visibility,
+        "interreflection" => Effect::Interreflection,
+        "color" => Effect::Color,
+        "masks" => Effect::Masks,
+        "specular" => Effect::Specular,
+        "normal-maps" => Effect::NormalMaps,
+        "emission" => Effect::Emission,
+        "transmission" => Effect::Transmission,
+        other => return Err(format!("'{other}' is no effect")),
+    })
+}
+
+fn bytes(text: &str) -> Result<u64, String> {
+    let (digits, unit) = match text.char_indices().next_back() {
+        Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
+        Some((at, 'M' | 'm')) => (&text[..at], 1 << 20),
+        Some((at, 'G' | 'g')) => (&text[..at], 1 << 30),
+        _ => (text, 1),
+    };
+    let number: u64 = digits.parse().map_err(|_| "give a number of bytes, such as 4G".to_owned())?;
+    number.checked_mul(unit).ok_or_else(|| "that is more than any machine has".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_become_settings() {
+        assert_eq!(bytes("4G"), Ok(4 << 30));
+        assert_eq!(bytes("100"), Ok(100));
+        assert!(bytes("G").is_err() && bytes("-1").is_err() && bytes("99999999999G").is_err());
+        assert_eq!(bounces("2"), Ok(Bounces::Fixed(2)));
+        assert!(bounces("many").is_err());
+        assert_eq!(effects("color,masks"), Ok(Effects::Only(vec![Effect::Color, Effect::Masks])));
+        assert!(effects("colour").is_err() && effects("").is_err());
+    }
+}

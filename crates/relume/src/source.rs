@@ -1,0 +1,163 @@
+//! Where scenes, light probes and baked files come from: a path or `builtin:NAME`.
+
+use crate::Usage;
+use crate::console::Console;
+use anyhow::{Context, Result};
+use coeff_io::Prt;
+use probe_io::{Environment, Layout, LoadOptions, Negatives};
+use scene::Scene;
+use sh_math::Bands;
+use std::path::{Path, PathBuf};
+
+/// A path or the name of something built in.
+#[derive(Debug, Clone)]
+enum Source {
+    Path(PathBuf),
+    Builtin(String),
+}
+
+/// Tells a path from a built-in name. Never fails; clap wants a parser that could.
+fn parse(text: &str) -> Result<Source, std::convert::Infallible> {
+    Ok(match text.strip_prefix("builtin:") {
+        Some(name) => Source::Builtin(name.into()),
+        None => Source::Path(text.into()),
+    })
+}
+
+/// Wrong usage: a name that is not built in.
+fn unknown(name: &str, known: &[(&str, &str)]) -> Usage {
+    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+    Usage(format!("there is no 'builtin:{name}'; there are {}", names.join(", ")))
+}
+
+/// The scene that a command works on.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SceneOptions {
+    /// A scene: .gltf, .glb, .obj, or builtin:NAME.
+    #[arg(value_name = "SCENE", value_parser = parse)]
+    scene: Source,
+}
+
+impl SceneOptions {
+    /// Loads the scene and tells what was mended.
+    pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
+        let scene = match &self.scene {
+            Source::Path(path) => scene::load(path)?,
+            Source::Builtin(name) => scene::builtin(name).ok_or_else(|| unknown(name, scene::BUILTINS))?,
+        };
+        for warning in &scene.report.warnings {
+            console.notice(&format!("warning: {}: {}", warning.object, warning.message));
+        }
+        let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        console.detail(&format!("{}: {} meshes, {triangles} triangles", scene.name, scene.meshes.len()));
+        Ok(scene)
+    }
+}
+
+/// How a light probe is read.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ReadOptions {
+    /// How the probe's picture is unrolled; found out by default.
+    #[arg(long, value_enum)]
+    layout: Option<LayoutName>,
+    /// What to do with negative pixels.
+    #[arg(long, value_enum, default_value_t = NegativesName::Refuse)]
+    negatives: NegativesName,
+}
+
+/// The light of a command that draws.
+#[derive(Debug, clap::Args)]
+pub(crate) struct ProbeOptions {
+    /// The light: .hdr, .exr, a folder of six faces, or builtin:NAME.
+    #[arg(long, value_name = "PROBE", value_parser = probe)]
+    probe: ProbeSource,
+    #[command(flatten)]
+    read: ReadOptions,
+}
+
+impl ProbeOptions {
+    pub(crate) fn load(&self, console: &Console) -> Result<Environment> {
+        self.probe.load(&self.read, console)
+    }
+}
+
+/// A light probe that is not loaded yet.
+#[derive(Debug, Clone)]
+pub(crate) struct ProbeSource(Source);
+
+/// Parses the name of a light probe.
+pub(crate) fn probe(text: &str) -> Result<ProbeSource, std::convert::Infallible> {
+    parse(text).map(ProbeSource)
+}
+
+impl ProbeSource {
+    /// Loads the probe and tells what was changed in it.
+    pub(crate) fn load(&self, read: &ReadOptions, console: &Console) -> Result<Environment> {
+        let path = match &self.0 {
+            Source::Path(path) => path,
+            Source::Builtin(name) => {
+                return Ok(probe_io::builtin(name).ok_or_else(|| unknown(name, probe_io::BUILTINS))?);
+            }
+        };
+        let negatives = match read.negatives {
+            NegativesName::Refuse => Negatives::Refuse,
+            NegativesName::Clamp => Negatives::Clamp,
+        };
+        let options = LoadOptions { layout: read.layout.map(Layout::from), negatives };
+        let (environment, warnings) = Environment::load(path, &options)?;
+        for warning in warnings {
+            console.notice(&format!("warning: {warning}"));
+        }
+        Ok(environment)
+    }
+}
+
+/// The layouts by the names that are typed.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum LayoutName {
+    /// Longitude by latitude, twice as wide as high.
+    Equirect,
+    /// Debevec's angular map.
+    Angular,
+    /// OpenEXR's strip of six faces.
+    ExrCube,
+    /// Cross of 3 by 4 tiles.
+    VerticalCross,
+    /// Cross of 4 by 3 tiles.
+    HorizontalCross,
+    /// Six faces px, nx, py, ny, pz, nz from top to bottom.
+    Faces,
+}
+
+impl From<LayoutName> for Layout {
+    fn from(name: LayoutName) -> Self {
+        match name {
+            LayoutName::Equirect => Self::Equirect,
+            LayoutName::Angular => Self::Angular,
+            LayoutName::ExrCube => Self::ExrCube,
+            LayoutName::VerticalCross => Self::VerticalCross,
+            LayoutName::HorizontalCross => Self::HorizontalCross,
+            LayoutName::Faces => Self::Faces,
+        }
+    }
+}
+
+/// What to do with negative pixels.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum NegativesName {
+    /// End with an error.
+    Refuse,
+    /// Set them to 0 and say so.
+    Clamp,
+}
+
+/// Reads a baked file.
+pub(crate) fn prt(path: &Path) -> Result<Prt> {
+    Prt::read(path).with_context(|| path.display().to_string())
+}
+
+/// Parses a number of bands that the harmonics support.
+pub(crate) fn bands(text: &str) -> Result<Bands, String> {
+    let bands = text.parse().ok().and_then(Bands::new);
+    bands.ok_or_else(|| format!("give a number of bands from 1 to {}", Bands::MAX))
+}
