@@ -1,0 +1,152 @@
+//! What the commands write is what they say: from a scene to a file to pictures and arrays.
+
+mod command;
+
+use command::{complaint, relume};
+use std::fs;
+use std::path::Path;
+
+/// Runs a command that must succeed; returns stdout and stderr.
+fn succeed(folder: &Path, arguments: &[&str]) -> (String, String) {
+    let output = relume(folder, arguments);
+    let text = complaint(&output);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {text}");
+    (String::from_utf8_lossy(&output.stdout).into_owned(), text)
+}
+
+fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
+    serde_json::from_str(&succeed(folder, arguments).0).unwrap()
+}
+
+#[test]
+fn a_bake_tells_what_it_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let plan = json(folder, &["plan", "builtin:half-blocked-plane", "--probe", "builtin:sky", "--json"]);
+    assert!(plan["plan"]["receivers"].as_u64().unwrap() > 0);
+    assert!(plan["light"]["lamps"].as_u64().unwrap() > 0);
+    let bake = ["bake", "builtin:half-blocked-plane", "-o", "a.prt", "--bands", "3", "--rays", "64", "--seed", "5"];
+    let (out, said) = succeed(folder, &bake);
+    assert!(out.is_empty() && said.contains("a.prt") && said.contains("rays"), "{said}");
+    let seen = json(folder, &["inspect", "a.prt", "--json"]);
+    assert_eq!(seen["version"], 1);
+    assert_eq!(seen["header"]["settings"]["seed"], 5);
+    assert_eq!(seen["header"]["bands"], 3);
+    assert_eq!(seen["file_length"], fs::metadata(folder.join("a.prt")).unwrap().len());
+    assert!(seen["chunks"].as_array().unwrap().iter().all(|chunk| chunk["sound"] == true));
+    let (text, _) = succeed(folder, &["inspect", "a.prt"]);
+    assert!(text.contains("half-blocked-plane") && text.contains("TRAN") && text.contains("Visibility"), "{text}");
+}
+
+/// Threads change nothing: the file is the same byte by byte.
+#[test]
+fn threads_do_not_change_a_bake() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (name, threads, seed) in [("1.prt", "1", "0"), ("2.prt", "3", "0"), ("other.prt", "1", "1")] {
+        let bake = [
+            "bake",
+            "builtin:half-blocked-plane",
+            "-o",
+            name,
+            "--rays",
+            "64",
+            "--threads",
+            threads,
+            "--seed",
+            seed,
+            "-q",
+        ];
+        let (_, said) = succeed(folder, &bake);
+        assert!(said.is_empty(), "-q must be quiet: {said}");
+    }
+    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert_eq!(bytes("1.prt"), bytes("2.prt"));
+    // The comparison can fail: another seed is another file.
+    assert_ne!(bytes("1.prt"), bytes("other.prt"));
+}
+
+/// A plane of albedo a under a white sky has radiance a; the sky behind has 1.
+#[test]
+fn a_white_sky_gives_the_albedo() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    succeed(folder, &["bake", "builtin:plane", "-o", "a.prt", "--bands", "3"]);
+    let render = ["render", "a.prt", "--probe", "builtin:white", "-o", "a.exr", "--size", "64x48"];
+    let (_, said) = succeed(folder, &render);
+    assert!(said.contains("on the CPU") && said.contains("apt install"), "the fall-back must be told: {said}");
+    let scene = scene::builtin("plane").unwrap();
+    let albedo = scene.albedo(0, 0, 0.3, 0.3);
+    let (width, height, pixels) = probe_io::read_picture(&folder.join("a.exr")).unwrap();
+    assert_eq!((width, height), (64, 48));
+    let near = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-3);
+    assert!(near(pixels[0], [1.0; 3]), "the sky: {:?}", pixels[0]);
+    let plane = pixels.iter().filter(|pixel| near(**pixel, albedo.to_array())).count();
+    assert!(plane > 200, "only {plane} pixels show the plane with its albedo of {albedo}");
+    let darker = [&render[..], &["--exposure", "-1"]].concat();
+    succeed(folder, &darker);
+    let (_, _, pixels) = probe_io::read_picture(&folder.join("a.exr")).unwrap();
+    assert!(near(pixels[0], [0.5; 3]), "the sky, one stop darker: {:?}", pixels[0]);
+}
+
+#[test]
+fn frames_are_numbered_and_timed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    succeed(folder, &["bake", "builtin:sphere", "-o", "a.prt", "--bands", "3"]);
+    let render = ["render", "a.prt", "--probe", "builtin:directional", "--backend", "cpu", "--size", "48x48"];
+    let (out, _) = succeed(folder, &[&render[..], &["--frames", "4", "-o", "f.png"]].concat());
+    assert!(out.contains("4 frames") && out.contains("ms"), "{out}");
+    succeed(folder, &[&render[..], &["--rotate", "90,0,0", "-o", "turned.png"]].concat());
+    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert_eq!(bytes("f-0001.png"), bytes("turned.png"), "frame 1 of 4 is a quarter turn");
+    assert_ne!(bytes("f-0000.png"), bytes("turned.png"), "a light from the side must change when it is turned");
+    assert!(folder.join("f-0003.png").exists() && !folder.join("f-0004.png").exists());
+}
+
+#[test]
+fn a_missing_gpu_is_an_error_where_it_was_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    succeed(folder, &["bake", "builtin:plane", "-o", "a.prt", "--bands", "2"]);
+    let output = relume(folder, &["render", "a.prt", "--probe", "builtin:white", "-o", "a.png", "--backend", "gpu"]);
+    assert_eq!(output.status.code(), Some(1), "{}", complaint(&output));
+    assert!(complaint(&output).contains("adapter"), "{}", complaint(&output));
+    let render = ["render", "a.prt", "--probe", "builtin:white", "-o", "a.png", "--camera", "nobody"];
+    let output = relume(folder, &render);
+    assert_eq!(output.status.code(), Some(2), "{}", complaint(&output));
+    assert!(complaint(&output).contains("nobody"), "{}", complaint(&output));
+    assert!(!folder.join("a.png").exists());
+}
+
+/// Under a white sky the reference shows the albedo too, and so does its reconstruction from few bands.
+#[test]
+fn the_reference_agrees_on_a_plane() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let albedo = scene::builtin("plane").unwrap().albedo(0, 0, 0.3, 0.3).to_array();
+    for light in ["full", "bands:3"] {
+        let reference = ["reference", "builtin:plane", "--probe", "builtin:white", "-o", "r.exr", "--size", "32x24"];
+        succeed(folder, &[&reference[..], &["--light", light, "--spp", "64"]].concat());
+        let (_, _, pixels) = probe_io::read_picture(&folder.join("r.exr")).unwrap();
+        let near = |pixel: &&[f32; 3]| pixel.iter().zip(albedo).all(|(p, a)| (p - a).abs() < 0.02);
+        let plane = pixels.iter().filter(near).count();
+        assert!(plane > 50, "{light}: only {plane} pixels show the plane with its albedo of {albedo:?}");
+    }
+}
+
+#[test]
+fn exports_have_the_shapes_that_they_promise() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    succeed(folder, &["bake", "builtin:cornell-box", "-o", "a.prt", "--bands", "2", "--rays", "32"]);
+    succeed(folder, &["export", "a.prt", "--format", "npy", "-o", "out"]);
+    let rows = json(folder, &["inspect", "a.prt", "--json"])["vertices"].as_u64().unwrap();
+    let header = String::from_utf8_lossy(&fs::read(folder.join("out/transfer.npy")).unwrap()[..128]).into_owned();
+    assert!(header.contains(&format!("({rows}, 4, 3")), "{header}");
+    succeed(folder, &["light", "builtin:white", "--bands", "2", "--format", "json", "-o", "l.json"]);
+    let light: serde_json::Value = serde_json::from_slice(&fs::read(folder.join("l.json")).unwrap()).unwrap();
+    let first = light["coefficients"][0][1].as_f64().unwrap();
+    assert!((first - (4.0 * std::f64::consts::PI).sqrt()).abs() < 1e-3, "{first}");
+    assert!(light["coefficients"][3][2].as_f64().unwrap().abs() < 1e-4);
+}
