@@ -8,4 +8,6 @@ struct Post {
     bloom: f32,
     // Levels of the blur pyramid.
     levels: f32,
+    // Most that the picture's format can hold.
+    largest: f32,
 }

@@ -12,5 +12,6 @@ fn resolve(at: Fullscreen) -> @location(0) vec4<f32> {
             sum += textureLoad(samples, first + vec2<u32>(x, y), 0).rgb;
         }
     }
-    return vec4<f32>(sum * post.exposure / f32(post.supersample * post.supersample), 1.0);
+    let exposed = sum * post.exposure / f32(post.supersample * post.supersample);
+    return vec4<f32>(min(exposed, vec3<f32>(post.largest)), 1.0);
 }

@@ -49,7 +49,7 @@ fn mirrored(point: Point, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let cosine = dot(normal, to_eye);
     let direction = view.light_from_world * (2.0 * cosine * normal - to_eye);
     let f0 = mix(vec3<f32>(0.04), point.base.rgb, point.metallic);
-    let albedo = environment_brdf(point.roughness, abs(cosine));
+    let albedo = environment_brdf(point.roughness, min(abs(cosine), 1.0));
     return reflected(normalize(direction), point.roughness) * (f0 * albedo.x + albedo.y);
 }
 

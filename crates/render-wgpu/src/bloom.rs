@@ -34,8 +34,8 @@ pub(crate) fn levels([width, height]: [u32; 2]) -> u32 {
 
 impl Bloom {
     /// Builds the pipelines.
-    pub(crate) fn new(device: &wgpu::Device) -> Self {
-        let pass = |entry| FullscreenPass::new(device, shaders::BLOOM, entry, &[], picture::LINEAR);
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let pass = |entry| FullscreenPass::new(&gpu.device, shaders::BLOOM, entry, &[], gpu.linear());
         Self { down: pass("bloom_down"), up: pass("bloom_up"), mix: pass("bloom_mix") }
     }
 
@@ -45,7 +45,7 @@ impl Bloom {
         let sizes = sizes.take(levels(size) as usize + 1).collect::<Vec<_>>();
         let level = |size: &[u32; 2]| {
             let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-            let texture = picture::create(gpu, "a level of the bloom", *size, 1, picture::LINEAR, usage)?;
+            let texture = picture::create(gpu, "a level of the bloom", *size, 1, gpu.linear(), usage)?;
             Ok(picture::view(&texture))
         };
         let fine = sizes.iter().map(level).collect::<Result<Vec<_>, Error>>()?;

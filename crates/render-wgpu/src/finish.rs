@@ -25,7 +25,7 @@ impl Finish {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let resolve = FullscreenPass::new(&gpu.device, shaders::RESOLVE, "resolve", &[], picture::LINEAR);
+        let resolve = FullscreenPass::new(&gpu.device, shaders::RESOLVE, "resolve", &[], gpu.linear());
         Self { post, resolve, bloom: None, pyramid: None, display: HashMap::new() }
     }
 
@@ -42,6 +42,7 @@ impl Finish {
             supersample: frame.supersample,
             bloom: frame.bloom,
             levels: bloom::levels(targets.size.pixels()) as f32,
+            largest: picture::largest(gpu.linear()),
         };
         gpu.queue.write_buffer(&self.post, 0, bytemuck::bytes_of(&numbers));
         let linear = picture::view(&targets.linear);
@@ -73,7 +74,7 @@ impl Finish {
         targets: &Targets,
         linear: &wgpu::TextureView,
     ) -> Result<(), Error> {
-        let bloom = self.bloom.take().unwrap_or_else(|| Bloom::new(&gpu.device));
+        let bloom = self.bloom.take().unwrap_or_else(|| Bloom::new(gpu));
         let pyramid = match self.pyramid.take() {
             Some((size, pyramid)) if size == targets.size => pyramid,
             _ => bloom.pyramid(gpu, targets.size.pixels(), &self.post)?,

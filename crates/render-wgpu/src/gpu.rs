@@ -18,7 +18,9 @@ pub struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     pub(crate) limits: wgpu::Limits,
-    /// Blending into 32-bit float pictures; without it blended scenes are drawn in 16-bit floats.
+    /// Drawing into 32-bit float pictures; without it (OpenGL) all pictures are of 16-bit floats.
+    pub(crate) draws_float32: bool,
+    /// Blending into them; without it blended scenes are drawn in 16-bit floats.
     pub(crate) blends_float32: bool,
     description: String,
 }
@@ -57,8 +59,20 @@ impl Gpu {
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| Error::NoDevice { adapter: info.name.clone(), reason: one_line(&error.to_string()) })?;
         let description = format!("{} ({})", info.name, info.backend);
-        let blends_float32 = features.contains(wgpu::Features::FLOAT32_BLENDABLE);
-        Ok(Self { device, queue, limits, blends_float32, description })
+        let float32 = adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float);
+        let draws_float32 = float32.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let blends_float32 = draws_float32 && features.contains(wgpu::Features::FLOAT32_BLENDABLE);
+        Ok(Self { device, queue, limits, draws_float32, blends_float32, description })
+    }
+
+    /// The format of linear pictures: exact on both sides of the read-back where the adapter can draw it.
+    pub(crate) fn linear(&self) -> wgpu::TextureFormat {
+        if self.draws_float32 { wgpu::TextureFormat::Rgba32Float } else { wgpu::TextureFormat::Rgba16Float }
+    }
+
+    /// The format of samples, which scenes with transparent surfaces `blend`.
+    pub(crate) fn samples(&self, blend: bool) -> wgpu::TextureFormat {
+        if blend && !self.blends_float32 { wgpu::TextureFormat::Rgba16Float } else { self.linear() }
     }
 
     /// Name of the adapter and of the interface, for people.

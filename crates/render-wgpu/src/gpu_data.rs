@@ -75,6 +75,7 @@ pub(crate) struct Post {
     pub(crate) supersample: u32,
     pub(crate) bloom: f32,
     pub(crate) levels: f32,
+    pub(crate) largest: f32,
 }
 
 #[cfg(test)]
@@ -130,7 +131,7 @@ mod tests {
         assert_eq!(wgsl_layout(shaders::RELIGHT, "Chunk"), rust_layout!(Chunk, vertices, coefficients), "Chunk");
         let lamp = rust_layout!(Lamp, direction, chord_squared, radiance);
         assert_eq!(wgsl_layout(shaders::SKY, "Lamp"), lamp, "Lamp");
-        let post = rust_layout!(Post, exposure, supersample, bloom, levels);
+        let post = rust_layout!(Post, exposure, supersample, bloom, levels, largest);
         for shader in [shaders::RESOLVE, shaders::BLOOM] {
             assert_eq!(wgsl_layout(shader, "Post"), post, "Post in {}", shader.name);
         }

@@ -127,7 +127,7 @@ fn numbers(material: &Material) -> gpu_data::Material {
         roughness: material.roughness,
         normal_scale: material.normal_scale,
         cutoff: if let AlphaMode::Mask(cutoff) = material.alpha { cutoff } else { 0.0 },
-        transmission: material.transmission,
+        transmission: material.transmission.clamp(0.0, 1.0),
         base: slot(material.base_color_texture),
         metallic_roughness: slot(material.metallic_roughness_texture),
         normal: slot(material.normal_texture),

@@ -2,8 +2,13 @@
 
 use crate::{Error, Gpu};
 
-/// The format of everything linear: exact on both sides of the read-back.
-pub(crate) const LINEAR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// The format of pictures that are only read: light probes keep every sun.
+pub(crate) const PROBE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Most that a texel of a linear format holds.
+pub(crate) fn largest(format: wgpu::TextureFormat) -> f32 {
+    if format == wgpu::TextureFormat::Rgba16Float { half::f16::MAX.to_f32() } else { f32::MAX }
+}
 
 /// A texture without content.
 pub(crate) fn create(

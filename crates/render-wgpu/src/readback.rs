@@ -5,19 +5,20 @@ use crate::{Error, Gpu};
 /// A texture on its way to memory.
 pub(crate) struct Readback {
     buffer: wgpu::Buffer,
+    format: wgpu::TextureFormat,
     row_bytes: usize,
     padded_row_bytes: usize,
 }
 
 impl Readback {
-    /// Records the copy of all of `texture`, whose texels have `texel_bytes` bytes.
+    /// Records the copy of all of `texture`.
     pub(crate) fn record(
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         texture: &wgpu::Texture,
-        texel_bytes: u32,
     ) -> Result<Self, Error> {
-        let row_bytes = texture.width() * texel_bytes;
+        let format = texture.format();
+        let row_bytes = texture.width() * format.block_copy_size(None).unwrap_or(16);
         let padded = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let size = u64::from(padded) * u64::from(texture.height());
         let what = || format!("reading back a picture of {}x{}", texture.width(), texture.height());
@@ -36,7 +37,16 @@ impl Readback {
             },
             texture.size(),
         );
-        Ok(Self { buffer, row_bytes: row_bytes as usize, padded_row_bytes: padded as usize })
+        Ok(Self { buffer, format, row_bytes: row_bytes as usize, padded_row_bytes: padded as usize })
+    }
+
+    /// The colours of a linear picture, of whichever floats it has.
+    pub(crate) fn read_linear(self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, Error> {
+        if self.format == wgpu::TextureFormat::Rgba16Float {
+            self.read(gpu, |&[r, g, b, _]: &[half::f16; 4]| [r, g, b].map(half::f16::to_f32))
+        } else {
+            self.read(gpu, |&[r, g, b, _]: &[f32; 4]| [r, g, b])
+        }
     }
 
     /// Waits for the copy, which must have been submitted, and converts each texel of type `T`.

@@ -34,7 +34,7 @@ pub(crate) fn upload(
     let size = [reflection.width as u32, reflection.height as u32];
     let texels = reflection.levels.iter().flat_map(|level| picture::with_alpha(level)).collect::<Vec<_>>();
     let layers = reflection.levels.len() as u32;
-    let texture = picture::upload(gpu, "the reflection", size, layers, picture::LINEAR, &texels)?;
+    let texture = picture::upload(gpu, "the reflection", size, layers, picture::PROBE, &texels)?;
     let view = texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()

@@ -12,9 +12,6 @@ use probe_io::Environment;
 use sh_math::{Bands, Rgb};
 use std::time::{Duration, Instant};
 
-/// Most that a 16-bit float holds.
-const LARGEST_HALF: f32 = 65504.0;
-
 /// A scene and its light on the GPU.
 #[derive(Debug)]
 pub struct Renderer {
@@ -61,7 +58,7 @@ impl Renderer {
             Error::invalid("the transfer", problem)
         })?;
         let device = &gpu.device;
-        let format = sample_format(gpu, prt);
+        let format = gpu.samples(surface::blends(prt));
         let relight = Relight::new(gpu, &prt.transfer, gpu.limits.max_storage_buffer_binding_size)?;
         let layouts = Layouts {
             view: view_layout(device),
@@ -96,13 +93,13 @@ impl Renderer {
         gpu.guarded("drawing", || {
             let mut encoder = self.record(frame)?;
             let targets = self.targets.as_ref().ok_or_else(|| Error::invalid("the frame", "nothing was drawn"))?;
-            let linear = Readback::record(&gpu, &mut encoder, &targets.linear, 16)?;
-            let display = Readback::record(&gpu, &mut encoder, &targets.display, 4)?;
+            let linear = Readback::record(&gpu, &mut encoder, &targets.linear)?;
+            let display = Readback::record(&gpu, &mut encoder, &targets.display)?;
             gpu.queue.submit([encoder.finish()]);
             Ok(Image {
                 width: frame.width,
                 height: frame.height,
-                linear: linear.read(&gpu, |&[r, g, b, _]: &[f32; 4]| [r, g, b])?,
+                linear: linear.read_linear(&gpu)?,
                 display: display.read(&gpu, |&texel: &[u8; 4]| texel)?,
             })
         })
@@ -145,8 +142,7 @@ impl Renderer {
             self.relight.record(&gpu, &mut encoder, &self.light.rotated(frame.rotation.normalize()));
             self.lit_for = Some(frame.rotation);
         }
-        let largest = if self.format == picture::LINEAR { f32::MAX } else { LARGEST_HALF };
-        let view = view::view(frame, self.near, largest);
+        let view = view::view(frame, self.near, picture::largest(self.format));
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.record_scene(&mut encoder, &targets, &view, frame.sky);
         self.finish.record(&gpu, &mut encoder, &targets, frame)?;
@@ -185,11 +181,6 @@ impl Renderer {
 /// As those two.
 pub fn render(gpu: &Gpu, prt: &Prt, environment: &Environment, frame: &Frame) -> Result<Image, Error> {
     Renderer::new(gpu, prt, environment)?.draw(frame)
-}
-
-/// 32-bit floats, but for scenes that blend on adapters that cannot blend those.
-fn sample_format(gpu: &Gpu, prt: &Prt) -> wgpu::TextureFormat {
-    if gpu.blends_float32 || !surface::blends(prt) { picture::LINEAR } else { wgpu::TextureFormat::Rgba16Float }
 }
 
 fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

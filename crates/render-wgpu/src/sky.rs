@@ -59,7 +59,7 @@ fn rows(gpu: &Gpu, probe: &Probe) -> usize {
 fn upload(gpu: &Gpu, probe: &Probe) -> Result<wgpu::Texture, Error> {
     let size = [probe.width, probe.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     let texels = picture::with_alpha(&probe.pixels);
-    picture::upload(gpu, "the light probe", size, 1, picture::LINEAR, &texels)
+    picture::upload(gpu, "the light probe", size, 1, picture::PROBE, &texels)
 }
 
 fn lamp(lamp: &Lamp) -> gpu_data::Lamp {

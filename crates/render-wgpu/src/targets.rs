@@ -44,7 +44,7 @@ impl Targets {
             "the picture",
             size.pixels(),
             1,
-            picture::LINEAR,
+            gpu.linear(),
             drawn | Usage::TEXTURE_BINDING | Usage::COPY_SRC,
         )?;
         let display_format = wgpu::TextureFormat::Rgba8Unorm;

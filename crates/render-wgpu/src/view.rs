@@ -1,22 +1,22 @@
 //! The camera and the turned light as the shaders see them (docs/shading.md, Camera and rasterisation).
 
 use crate::{Frame, gpu_data};
-use coeff_io::{Camera, Prt};
-use glam::{DMat3, DQuat, DVec3};
+use coeff_io::Prt;
+use glam::{DMat3, DQuat};
 
 /// Ratio of the near distance to the diagonal of the scene.
 const NEAR_SHARE: f32 = 1e-4;
 
 /// The view of a frame; `near` is the view depth of the near plane, `largest` the most that the target can hold.
 pub(crate) fn view(frame: &Frame, near: f32, largest: f32) -> gpu_data::View {
-    let (forward, right, up) = axes(&frame.camera);
+    let [right, up, back] = frame.camera.axes().map(|axis| axis.as_dvec3());
     let tangent = (0.5 * f64::from(frame.camera.vertical_fov)).tan();
     let aspect = f64::from(frame.width) / f64::from(frame.height);
     let light_from_world = DMat3::from_quat(light_from_world(frame));
     gpu_data::View {
         eye: frame.camera.eye,
         near,
-        forward: forward.as_vec3().into(),
+        forward: (-back).as_vec3().into(),
         largest,
         right: (tangent * aspect * right).as_vec3().into(),
         up: (tangent * up).as_vec3().into(),
@@ -36,16 +36,4 @@ pub(crate) fn near_plane(prt: &Prt) -> f32 {
 
 fn light_from_world(frame: &Frame) -> DQuat {
     frame.rotation.as_dquat().normalize().inverse()
-}
-
-/// Unit forward, right and up. An `up` along the view is replaced by the axis that the view follows least.
-fn axes(camera: &Camera) -> (DVec3, DVec3, DVec3) {
-    let vector = |v: [f32; 3]| DVec3::from(v.map(f64::from));
-    let forward = (vector(camera.target) - vector(camera.eye)).normalize();
-    let mut right = forward.cross(vector(camera.up).normalize_or_zero());
-    if right.length() < 1e-6 {
-        right = forward.cross(DVec3::AXES[forward.abs().min_position()]);
-    }
-    let right = right.normalize();
-    (forward, right, right.cross(forward))
 }

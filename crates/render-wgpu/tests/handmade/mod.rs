@@ -14,7 +14,7 @@ use sh_math::{Bands, zonal};
 const BANDS: u32 = 4;
 
 /// A white diffuse material.
-pub fn white() -> Material {
+pub(crate) fn white() -> Material {
     Material {
         name: "white".into(),
         base_color: [1.0; 4],
@@ -33,7 +33,7 @@ pub fn white() -> Material {
 }
 
 /// A view from above the plane.
-pub fn camera() -> Camera {
+pub(crate) fn camera() -> Camera {
     Camera {
         name: "test".into(),
         eye: [2.2, 1.7, 3.4],
@@ -44,7 +44,7 @@ pub fn camera() -> Camera {
 }
 
 /// A noisy panorama with a strong contrast and one lamp.
-pub fn environment() -> Environment {
+pub(crate) fn environment() -> Environment {
     let mut environment = Environment::from_function("noise", 24, |d| {
         let wave = (7.0 * d.x).sin() * (5.0 * d.y + 1.0).cos() * (6.0 * d.z).sin();
         [1.0 + d.y + 0.7 * wave, 1.0 + 0.8 * wave, 0.7 - 0.4 * d.y + 0.3 * d.x].map(|x| x.max(0.0))
@@ -170,13 +170,15 @@ fn textures() -> Vec<Texture> {
         }),
         texture("metal", [8, 8], [Wrap::Clamp, Wrap::Repeat], move |u, v| [0.0, wave(6.0 * u), wave(9.0 * v), 1.0]),
         texture("bumps", [16, 16], [Wrap::Repeat; 2], move |u, v| [wave(6.28 * u), wave(12.56 * v), 1.0, 1.0]),
-        texture("leaf", [8, 8], [Wrap::Mirror, Wrap::Clamp], move |u, v| [0.3, 0.8, 0.2, wave(9.0 * u) * wave(8.0 * v)]),
+        texture("leaf", [8, 8], [Wrap::Mirror, Wrap::Clamp], move |u, v| {
+            [0.3, 0.8, 0.2, wave(9.0 * u) * wave(8.0 * v)]
+        }),
         texture("glow", [4, 4], [Wrap::Clamp; 2], |u, v| [u, v, 0.5, 1.0]),
     ]
 }
 
 /// The whole scene; the sphere has about `rings * rings * 2` cells.
-pub fn sphere_on_plane(channels: u32, rings: u32) -> Prt {
+pub(crate) fn sphere_on_plane(channels: u32, rings: u32) -> Prt {
     let mut prt = empty(channels);
     prt.textures = textures();
     let floor = Material {
@@ -234,6 +236,6 @@ fn add_panes(prt: &mut Prt) {
 }
 
 /// The rotation of the light in tests.
-pub fn rotation() -> Quat {
+pub(crate) fn rotation() -> Quat {
     Quat::from_rotation_y(0.8) * Quat::from_rotation_x(-0.3)
 }
