@@ -34,6 +34,9 @@ pub(crate) trait Path {
     type Four: Lanes;
     type Eight: Lanes;
     type Rays: Lanes;
+
+    /// Asks for the memory at a place, which need not exist, to be brought near.
+    fn fetch(place: *const u8);
 }
 
 /// Plain arrays, which any processor can do.
@@ -208,4 +211,7 @@ impl Path for Portable {
     type Four = Row<4>;
     type Eight = Row<8>;
     type Rays = Row<8>;
+
+    #[inline(always)]
+    fn fetch(_place: *const u8) {}
 }

@@ -186,6 +186,7 @@ impl<R: Lanes> Walk<'_, R> {
             let slot = last ^ packet.octant;
             let rays = self.meets_box(&enters, &leaves, slot) & mask;
             if rays != 0 {
+                self.tree.fetch::<P>(node.children[slot]);
                 waiting.push(u64::from(rays) << 32 | u64::from(node.children[slot].bits()));
             }
         }

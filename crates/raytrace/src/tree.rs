@@ -1,5 +1,6 @@
 //! The tree that rays walk: eight-wide nodes with boxes by structure of arrays, triangles in blocks of four.
 
+use crate::lanes::Path;
 use crate::ray::LARGEST;
 use glam::Vec3;
 
@@ -108,6 +109,22 @@ pub(crate) struct Tree {
     pub(crate) stack_need: usize,
     /// Largest coordinate of any corner, by amount.
     pub(crate) reach: f32,
+}
+
+impl Tree {
+    /// Brings a child near that will be visited soon.
+    #[inline(always)]
+    pub(crate) fn fetch<P: Path>(&self, child: Child) {
+        let (place, size) = match child.as_block() {
+            Some(index) => (self.blocks.as_ptr().wrapping_add(index).cast::<u8>(), size_of::<Block>()),
+            None => (self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>(), size_of::<Node>()),
+        };
+        let mut at = 0;
+        while at < size {
+            P::fetch(place.wrapping_add(at));
+            at += 64;
+        }
+    }
 }
 
 /// Whether a triangle can be traced at all: finite, within reach, and not two corners in one place.

@@ -145,7 +145,7 @@ pub(crate) fn blocked<P: Path>(
         } else {
             let node = &tree.nodes[child.index()];
             let mask = walker.boxes::<P::Eight>(node, walker.end);
-            push(stack, node, mask, walker.octant);
+            push::<P>(tree, stack, node, mask, walker.octant);
         }
         if stack.len() == base {
             return None;
@@ -156,12 +156,14 @@ pub(crate) fn blocked<P: Path>(
 
 /// Puts the children of a mask on the stack, the farthest first.
 #[inline(always)]
-fn push(stack: &mut Vec<u32>, node: &Node, mask: u32, octant: usize) {
+fn push<P: Path>(tree: &Tree, stack: &mut Vec<u32>, node: &Node, mask: u32, octant: usize) {
     let mut order = PERMUTED[octant][mask as usize];
     while order != 0 {
         let last = 7 - order.leading_zeros() as usize;
         order &= !(1 << last);
-        stack.push(node.children[last ^ octant].bits());
+        let child = node.children[last ^ octant];
+        tree.fetch::<P>(child);
+        stack.push(child.bits());
     }
 }
 
@@ -216,7 +218,7 @@ pub(crate) fn nearest<P: Path>(tree: &Tree, walker: &Walker, stack: &mut Vec<u32
         } else {
             let node = &tree.nodes[child.index()];
             let mask = walker.boxes::<P::Eight>(node, end);
-            push(stack, node, mask, walker.octant);
+            push::<P>(tree, stack, node, mask, walker.octant);
         }
         if stack.len() == base {
             return best;

@@ -244,6 +244,11 @@ impl Path for Avx2 {
     type Four = Row4;
     type Eight = Row8;
     type Rays = crate::lanes::Pair<Row8>;
+
+    #[inline(always)]
+    fn fetch(place: *const u8) {
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(place.cast()) }
+    }
 }
 
 /// Processors with AVX-512.
@@ -253,4 +258,9 @@ impl Path for Avx512 {
     type Four = Row4;
     type Eight = Row8;
     type Rays = Row16;
+
+    #[inline(always)]
+    fn fetch(place: *const u8) {
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(place.cast()) }
+    }
 }

@@ -6,14 +6,14 @@ use glam::{DVec3, Vec3};
 use raytrace::Ray;
 
 /// A small generator with a fixed seed.
-pub struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    pub fn new(seed: u64) -> Random {
+    pub(crate) fn new(seed: u64) -> Random {
         Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x1234_5678_9abc_def1)
     }
 
-    pub fn next(&mut self) -> u64 {
+    pub(crate) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -22,17 +22,17 @@ impl Random {
     }
 
     /// In [0, 1).
-    pub fn unit(&mut self) -> f32 {
+    pub(crate) fn unit(&mut self) -> f32 {
         (self.next() >> 40) as f32 / 16_777_216.0
     }
 
     /// In the cube from -1 to 1.
-    pub fn point(&mut self) -> Vec3 {
+    pub(crate) fn point(&mut self) -> Vec3 {
         Vec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
     }
 
     /// Uniform on the sphere.
-    pub fn direction(&mut self) -> Vec3 {
+    pub(crate) fn direction(&mut self) -> Vec3 {
         loop {
             let p = self.point();
             if (0.01..=1.0).contains(&p.length_squared()) {
@@ -43,7 +43,7 @@ impl Random {
 }
 
 /// Triangles of a given size scattered in the cube from -1 to 1.
-pub fn soup(n: usize, size: f32, seed: u64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(crate) fn soup(n: usize, size: f32, seed: u64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut random = Random::new(seed);
     let mut positions = Vec::new();
     for _ in 0..n {
@@ -55,7 +55,7 @@ pub fn soup(n: usize, size: f32, seed: u64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 }
 
 /// The nearest hit by the textbook formula in double precision, over all triangles: number and t.
-pub fn brute_closest(positions: &[Vec3], triangles: &[[u32; 3]], ray: &Ray) -> Option<(u32, f64)> {
+pub(crate) fn brute_closest(positions: &[Vec3], triangles: &[[u32; 3]], ray: &Ray) -> Option<(u32, f64)> {
     let mut best: Option<(u32, f64)> = None;
     for (number, corners) in triangles.iter().enumerate() {
         let [a, b, c] = corners.map(|i| positions[i as usize].as_dvec3());
@@ -82,7 +82,7 @@ fn textbook(origin: DVec3, d: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
 }
 
 /// Cosine-distributed directions around a normal, neighbours in the list near each other on the sphere.
-pub fn hemisphere(normal: Vec3, n: usize) -> Vec<Vec3> {
+pub(crate) fn hemisphere(normal: Vec3, n: usize) -> Vec<Vec3> {
     let (x, y) = normal.any_orthonormal_pair();
     let side = (n as f32).sqrt().ceil() as usize;
     let cell = |i: usize| {
@@ -97,7 +97,7 @@ pub fn hemisphere(normal: Vec3, n: usize) -> Vec<Vec3> {
 
 /// A closed mesh around the origin with shared vertices: an octahedron divided `levels` times, its radius between
 /// 1 - bump and 1 + bump at random.
-pub fn ball(levels: u32, bump: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(crate) fn ball(levels: u32, bump: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut positions = vec![Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
     let mut triangles: Vec<[u32; 3]> =
         vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
