@@ -123,6 +123,26 @@ fn settle(block: &Block, origin: Vec3) -> [f32; BLOCK] {
     })
 }
 
+/// Which triangles of a block some direction between two corners of a box may meet.
+///
+/// Rounding is monotonous, so a triangle that this leaves out is one that `candidates` would for each direction.
+#[inline(always)]
+pub(crate) fn candidates_between<F: Lanes>(seen: &Seen, least: Vec3, most: Vec3) -> u32 {
+    let zero = F::splat(0.0);
+    let least = [F::splat(least.x), F::splat(least.y), F::splat(least.z)];
+    let most = [F::splat(most.x), F::splat(most.y), F::splat(most.z)];
+    let mut out = 0;
+    for k in 0..3 {
+        let along = |axis: usize| {
+            let normal = F::load(&seen.normals[3 * k + axis]);
+            normal.mul(least[axis]).max(normal.mul(most[axis]))
+        };
+        let product = along(0).add(along(1)).add(along(2));
+        out |= zero.above(product.add(F::load(&seen.slack[k])));
+    }
+    !out & ((1 << BLOCK) - 1)
+}
+
 /// Which triangles of a block one direction may meet, and which of those beyond doubt; components up to 1.
 #[inline(always)]
 pub(crate) fn candidates<F: Lanes>(seen: &Seen, direction: Vec3) -> (u32, u32) {

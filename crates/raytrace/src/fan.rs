@@ -5,6 +5,7 @@ use crate::level::{Job, dispatch};
 use crate::packet::{Packet, Scratch, WIDEST, Walk, alone};
 use crate::queue::{Directions, Group, Queue};
 use crate::ray::{Hit, LARGEST, Line};
+use crate::sight::Occluders;
 use crate::tracer::Tracer;
 use crate::tree::{Child, Tree};
 use crate::walk::{Apart, Solid, Walker};
@@ -108,11 +109,13 @@ impl Job for OccludedFan<'_> {
         let OccludedFan { tree, directions, solid, state, blocked } = self;
         let FanState { scratch, queue } = state;
         scratch.sights.start(directions.origin);
-        scratch.occluders.start::<P::Four>(tree, &mut scratch.sights);
         queue.start();
         while let Some(group) = queue.next::<P::Rays>(&directions) {
             let stopped = match packet::<P::Rays>(tree, directions.origin, &group) {
-                Some(packet) => Walk { tree, packet, solid }.blocked::<P>(group.alive, scratch),
+                Some(packet) => {
+                    let cell = Occluders::cell(packet.octant, group.middle::<P::Rays>());
+                    Walk { tree, packet, solid, cell }.blocked::<P>(group.alive, scratch)
+                }
                 None => strangers(tree, &directions, &group, solid, scratch),
             };
             group.mark(stopped, blocked);
@@ -140,12 +143,14 @@ fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, group: &'a Group) -> Option<P
     }
     let bit = |axis: usize| usize::from(range[axis].0 < 0.0) << axis;
     let octant = bit(0) | bit(1) | bit(2);
+    let least = Vec3::new(direction[0].lowest(), direction[1].lowest(), direction[2].lowest());
+    let most = Vec3::new(direction[0].highest(), direction[1].highest(), direction[2].highest());
     let mut inverse_each = [[0.0; WIDEST]; 3];
     for axis in 0..3 {
         inverse[axis].store(&mut inverse_each[axis]);
     }
     let apart = Apart::new(tree, origin, octant);
-    Some(Packet { direction, inverse, each: &group.directions, inverse_each, octant, apart, range })
+    Some(Packet { direction, inverse, each: &group.directions, inverse_each, octant, apart, least, most, range })
 }
 
 /// Rays that no packet takes: one by one.
@@ -156,7 +161,7 @@ fn strangers(tree: &Tree, directions: &Directions<'_>, group: &Group, solid: Sol
     for i in (0..WIDEST).filter(|i| group.alive >> i & 1 == 1) {
         if let Some(line) = Line::new(&directions.ray(group.numbers[i] as usize)) {
             let walker = Walker::new(tree, line);
-            stopped |= u32::from(alone::<Portable>(tree, &walker, Child::node(0), solid, scratch)) << i;
+            stopped |= u32::from(alone::<Portable>(tree, &walker, Child::node(0), solid, 0, scratch)) << i;
         }
     }
     stopped

@@ -1,6 +1,6 @@
 //! A packet of rays from one point into one octant through the tree; the last few alive go on alone.
 
-use crate::block::dot;
+use crate::block::{candidates_between, dot};
 use crate::lanes::{Lanes, Path};
 use crate::ray::Line;
 use crate::sight::{Occluders, Plane3, Sights};
@@ -29,7 +29,7 @@ pub(crate) struct Scratch {
 
 impl Scratch {
     pub(crate) fn new() -> Scratch {
-        Scratch { sights: Sights::new(), occluders: Occluders::default(), waiting: Vec::new(), stack: Vec::new() }
+        Scratch { sights: Sights::new(), occluders: Occluders::new(), waiting: Vec::new(), stack: Vec::new() }
     }
 }
 
@@ -42,6 +42,9 @@ pub(crate) struct Packet<'a, R> {
     pub(crate) inverse_each: [Many; 3],
     pub(crate) octant: usize,
     pub(crate) apart: Apart,
+    /// Corners of the box around the directions.
+    pub(crate) least: Vec3,
+    pub(crate) most: Vec3,
     /// Least and greatest reciprocal of each axis.
     pub(crate) range: [(f32, f32); 3],
 }
@@ -51,13 +54,15 @@ pub(crate) struct Walk<'a, R> {
     pub(crate) tree: &'a Tree,
     pub(crate) packet: Packet<'a, R>,
     pub(crate) solid: Solid<'a>,
+    /// Where its occluders are remembered.
+    pub(crate) cell: usize,
 }
 
 impl<R: Lanes> Walk<'_, R> {
     /// Which of the rays in `alive` are blocked.
     #[inline(always)]
     pub(crate) fn blocked<P: Path<Rays = R>>(&self, alive: u32, scratch: &mut Scratch) -> u32 {
-        let mut open = self.try_occluders(alive, &mut scratch.occluders);
+        let mut open = self.try_occluders::<P>(alive, scratch);
         scratch.waiting.clear();
         let mut child = Child::node(0);
         let mut mask = open;
@@ -79,18 +84,17 @@ impl<R: Lanes> Walk<'_, R> {
         alive & !open
     }
 
-    /// Tries the latest occluders; returns the rays they leave.
+    /// Tries what blocked the last rays that went this way; returns the rays it leaves.
     #[inline(always)]
-    fn try_occluders(&self, alive: u32, occluders: &mut Occluders) -> u32 {
+    fn try_occluders<P: Path<Rays = R>>(&self, alive: u32, scratch: &mut Scratch) -> u32 {
         let mut open = alive;
-        let mut index = 0;
-        while open != 0 && index < occluders.planes().len() {
-            let (_, sure) = self.meets(&occluders.planes()[index]);
-            if sure & open != 0 {
-                open &= !sure;
-                occluders.promote(index);
+        for (block, lane) in scratch.occluders.known(self.tree, self.cell) {
+            let seen = scratch.sights.view::<P::Four>(self.tree, block);
+            let (_, sure) = self.meets(&Plane3::of(seen, lane));
+            open &= !sure;
+            if open == 0 {
+                break;
             }
-            index += 1;
         }
         open
     }
@@ -128,7 +132,7 @@ impl<R: Lanes> Walk<'_, R> {
         let origin = sights.origin;
         let seen = sights.view::<P::Four>(self.tree, index);
         let mut stopped = 0;
-        let mut lanes = block.valid;
+        let mut lanes = candidates_between::<P::Four>(seen, self.packet.least, self.packet.most);
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
@@ -148,7 +152,7 @@ impl<R: Lanes> Walk<'_, R> {
                 now |= u32::from(stop) << ray;
             }
             if now != 0 && !masked {
-                occluders.keep(index, lane, seen);
+                occluders.keep(self.cell, index, lane);
             }
             stopped |= now;
             if stopped == mask {
@@ -214,7 +218,7 @@ impl<R: Lanes> Walk<'_, R> {
             rays &= rays - 1;
             let line = self.line(ray, scratch.sights.origin);
             let walker = Walker { line, octant: self.packet.octant, apart: self.packet.apart, end: f32::INFINITY };
-            stopped |= u32::from(alone::<P>(self.tree, &walker, from, self.solid, scratch)) << ray;
+            stopped |= u32::from(alone::<P>(self.tree, &walker, from, self.solid, self.cell, scratch)) << ray;
         }
         stopped
     }
@@ -241,6 +245,7 @@ pub(crate) fn alone<P: Path>(
     walker: &Walker,
     from: Child,
     solid: Solid<'_>,
+    cell: usize,
     scratch: &mut Scratch,
 ) -> bool {
     let Scratch { sights, occluders, stack, .. } = scratch;
@@ -248,8 +253,7 @@ pub(crate) fn alone<P: Path>(
         return false;
     };
     if tree.blocks[index].masked >> lane & 1 == 0 {
-        let seen = sights.view::<P::Four>(tree, index);
-        occluders.keep(index, lane, seen);
+        occluders.keep(cell, index, lane);
     }
     true
 }

@@ -36,6 +36,13 @@ pub(crate) struct Group {
 impl Group {
     const EMPTY: Group = Group { directions: [[1.0; WIDEST]; 3], numbers: [0; WIDEST], alive: 0, neighbours: false };
 
+    /// The direction that stands for the group.
+    #[inline(always)]
+    pub(crate) fn middle<R: Lanes>(&self) -> [f32; 3] {
+        let [x, y, z] = &self.directions;
+        [x[R::N / 2], y[R::N / 2], z[R::N / 2]]
+    }
+
     /// Sets the bits of the rays that are stopped.
     #[inline(always)]
     pub(crate) fn mark(&self, stopped: u32, blocked: &mut [u64]) {

@@ -50,8 +50,17 @@ impl View for Sights {
     }
 }
 
-/// Most triangles kept as recent occluders.
-pub(crate) const KEPT: usize = 8;
+/// Cells per axis within an octant, by which occluders are remembered.
+const CELLS: usize = 8;
+
+/// Occluders remembered in a cell.
+const PER_CELL: usize = 2;
+
+/// Block and lane of a triangle.
+type Place = (u32, u32);
+
+/// No triangle.
+const NOWHERE: Place = (u32::MAX, 0);
 
 /// One triangle as the origin sees it: normals of its three edge planes and their bounds.
 #[derive(Clone, Copy, Debug)]
@@ -74,57 +83,46 @@ impl Plane3 {
     }
 }
 
-/// The triangles that blocked the latest rays, the latest first: they are tried before the tree is walked.
-#[derive(Debug, Default)]
+/// The triangles that blocked the latest rays by the direction of those rays: a receiver's neighbour mostly sees the
+/// same triangle there. They are tried before the tree is walked.
+#[derive(Debug)]
 pub(crate) struct Occluders {
-    /// Block and lane.
-    places: Vec<(u32, u32)>,
-    planes: Vec<Plane3>,
+    cells: Vec<[Place; PER_CELL]>,
 }
 
 impl Occluders {
-    /// Looks at the triangles kept from the last fan from a new origin.
-    #[inline(always)]
-    pub(crate) fn start<F: Lanes>(&mut self, tree: &Tree, sights: &mut Sights) {
-        // The state may come from another tracer.
-        let known = |&(block, lane): &(u32, u32)| {
-            let block = tree.blocks.get(block as usize);
-            block.is_some_and(|block| (block.valid & !block.masked) >> lane & 1 == 1)
-        };
-        self.places.retain(known);
-        self.planes.clear();
-        for &(block, lane) in &self.places {
-            let seen = sights.view::<F>(tree, block as usize);
-            self.planes.push(Plane3::of(seen, lane as usize));
-        }
+    pub(crate) fn new() -> Occluders {
+        Occluders { cells: vec![[NOWHERE; PER_CELL]; 8 * CELLS * CELLS] }
     }
 
+    /// The cell of a unit direction in an octant.
     #[inline(always)]
-    pub(crate) fn planes(&self) -> &[Plane3] {
-        &self.planes
+    pub(crate) fn cell(octant: usize, direction: [f32; 3]) -> usize {
+        let [x, y, z] = direction.map(f32::abs);
+        let scale = CELLS as f32 / (x + y + z);
+        let along = |a: f32| ((a * scale) as usize).min(CELLS - 1);
+        (octant * CELLS + along(x)) * CELLS + along(y)
     }
 
-    /// A kept triangle has blocked again.
+    /// The triangles remembered in a cell that this tree has: the state may come from another tracer.
     #[inline(always)]
-    pub(crate) fn promote(&mut self, index: usize) {
-        if index > 0 {
-            self.places[..=index].rotate_right(1);
-            self.planes[..=index].rotate_right(1);
-        }
+    pub(crate) fn known(&self, tree: &Tree, cell: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let blocks = tree.blocks.as_slice();
+        let known = self.cells[cell].map(|(index, lane)| {
+            let block = blocks.get(index as usize)?;
+            ((block.valid & !block.masked) >> lane & 1 == 1).then_some((index as usize, lane as usize))
+        });
+        known.into_iter().flatten()
     }
 
-    /// Keeps a triangle that blocked.
+    /// Remembers a triangle that blocked.
     #[inline(always)]
-    pub(crate) fn keep(&mut self, block: usize, lane: usize, seen: &Seen) {
+    pub(crate) fn keep(&mut self, cell: usize, block: usize, lane: usize) {
         let place = (block as u32, lane as u32);
-        if self.places.first() == Some(&place) {
-            return;
+        let kept = &mut self.cells[cell];
+        if !kept.contains(&place) {
+            kept.rotate_right(1);
+            kept[0] = place;
         }
-        if self.places.len() == KEPT {
-            self.places.pop();
-            self.planes.pop();
-        }
-        self.places.insert(0, place);
-        self.planes.insert(0, Plane3::of(seen, lane));
     }
 }
