@@ -165,30 +165,18 @@ impl<R: Lanes> Walk<'_, R> {
     /// Puts the children that any ray of a mask meets on the stack, the farthest first.
     #[inline(always)]
     fn descend<P: Path>(&self, node: &Node, mask: u32, waiting: &mut Vec<u64>) {
-        let packet = &self.packet;
-        let (entry, exit) = planes(packet.octant);
-        let mut enters = [[0.0f32; WIDTH]; 3];
-        let mut leaves = [[0.0f32; WIDTH]; 3];
-        type Boxes<P> = <P as Path>::Eight;
-        let mut near = Boxes::<P>::splat(0.0);
-        let mut far = Boxes::<P>::splat(f32::INFINITY);
-        for axis in 0..3 {
-            let enter = Boxes::<P>::load(&node.bounds[entry[axis]]).sub(Boxes::<P>::splat(packet.apart.near[axis]));
-            let leave = Boxes::<P>::load(&node.bounds[exit[axis]]).sub(Boxes::<P>::splat(packet.apart.far[axis]));
-            let least = Boxes::<P>::splat(packet.range[axis].0);
-            let greatest = Boxes::<P>::splat(packet.range[axis].1);
-            near = enter.mul(least).min(enter.mul(greatest)).max(near);
-            far = leave.mul(least).max(leave.mul(greatest)).min(far);
-            enter.store(&mut enters[axis]);
-            leave.store(&mut leaves[axis]);
+        let boxes = Boxes::<P::Eight>::of(node, &self.packet);
+        let (some, all) = boxes.met();
+        let mut planes = Planes::default();
+        if some & !all != 0 {
+            boxes.store(&mut planes);
         }
-        let some = !near.above(far.mul(Boxes::<P>::splat(LATER))) & ((1 << WIDTH) - 1);
-        let mut order = PERMUTED[packet.octant][some as usize];
+        let mut order = PERMUTED[self.packet.octant][some as usize];
         while order != 0 {
             let last = 7 - order.leading_zeros() as usize;
             order &= !(1 << last);
-            let slot = last ^ packet.octant;
-            let rays = self.meets_box(&enters, &leaves, slot) & mask;
+            let slot = last ^ self.packet.octant;
+            let rays = if all >> slot & 1 == 1 { mask } else { self.meets_box(&planes, slot) & mask };
             if rays != 0 {
                 self.tree.fetch::<P>(node.children[slot]);
                 waiting.push(u64::from(rays) << 32 | u64::from(node.children[slot].bits()));
@@ -196,14 +184,14 @@ impl<R: Lanes> Walk<'_, R> {
         }
     }
 
-    /// Which rays meet one box, given by its planes from the origin.
+    /// Which rays meet one box.
     #[inline(always)]
-    fn meets_box(&self, enters: &[[f32; WIDTH]; 3], leaves: &[[f32; WIDTH]; 3], slot: usize) -> u32 {
+    fn meets_box(&self, planes: &Planes, slot: usize) -> u32 {
         let mut near = R::splat(0.0);
         let mut far = R::splat(f32::INFINITY);
         for axis in 0..3 {
-            near = R::splat(enters[axis][slot]).mul(self.packet.inverse[axis]).max(near);
-            far = R::splat(leaves[axis][slot]).mul(self.packet.inverse[axis]).min(far);
+            near = R::splat(planes.enter[axis][slot]).mul(self.packet.inverse[axis]).max(near);
+            far = R::splat(planes.leave[axis][slot]).mul(self.packet.inverse[axis]).min(far);
         }
         !near.above(far.mul(R::splat(LATER)))
     }
@@ -234,6 +222,57 @@ impl<R: Lanes> Walk<'_, R> {
             scale: 1.0,
             t_min: 0.0,
             t_max: f32::INFINITY,
+        }
+    }
+}
+
+/// The planes of eight boxes from the origin, one by one.
+#[derive(Default)]
+struct Planes {
+    enter: [[f32; WIDTH]; 3],
+    leave: [[f32; WIDTH]; 3],
+}
+
+/// The planes of eight boxes from the origin of a packet, and where its rays pass them at the earliest and the latest.
+struct Boxes<E> {
+    enter: [E; 3],
+    leave: [E; 3],
+    near: (E, E),
+    far: (E, E),
+}
+
+impl<E: Lanes> Boxes<E> {
+    #[inline(always)]
+    fn of<R>(node: &Node, packet: &Packet<'_, R>) -> Boxes<E> {
+        let (entry, exit) = planes(packet.octant);
+        let (zero, endless) = (E::splat(0.0), E::splat(f32::INFINITY));
+        let mut boxes = Boxes { enter: [zero; 3], leave: [zero; 3], near: (zero, zero), far: (endless, endless) };
+        for axis in 0..3 {
+            let enter = E::load(&node.bounds[entry[axis]]).sub(E::splat(packet.apart.near[axis]));
+            let leave = E::load(&node.bounds[exit[axis]]).sub(E::splat(packet.apart.far[axis]));
+            let (least, most) = (E::splat(packet.range[axis].0), E::splat(packet.range[axis].1));
+            let (a, b) = (enter.mul(least), enter.mul(most));
+            let (c, d) = (leave.mul(least), leave.mul(most));
+            boxes.near = (a.min(b).max(boxes.near.0), a.max(b).max(boxes.near.1));
+            boxes.far = (c.min(d).min(boxes.far.0), c.max(d).min(boxes.far.1));
+            boxes.enter[axis] = enter;
+            boxes.leave[axis] = leave;
+        }
+        boxes
+    }
+
+    /// Which boxes some ray may meet, and which of those every ray does.
+    #[inline(always)]
+    fn met(&self) -> (u32, u32) {
+        let some = !self.near.0.above(self.far.1.mul(E::splat(LATER))) & ((1 << WIDTH) - 1);
+        (some, !self.near.1.above(self.far.0) & some)
+    }
+
+    #[inline(always)]
+    fn store(&self, planes: &mut Planes) {
+        for axis in 0..3 {
+            self.enter[axis].store(&mut planes.enter[axis]);
+            self.leave[axis].store(&mut planes.leave[axis]);
         }
     }
 }
