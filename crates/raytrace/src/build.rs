@@ -5,7 +5,11 @@ use glam::{Vec3, Vec3A};
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2_from_tris;
 use obvhs::{BvhBuildParams, triangle::Triangle};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
+
+/// Trees built so far, by which a fan's state knows its tree again.
+static TREES: AtomicU64 = AtomicU64::new(0);
 
 /// What testing a block costs against a step through a binary node: at once, and per triangle.
 const BLOCK_COST: f32 = 0.9;
@@ -49,6 +53,7 @@ pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]], masked: &[bool]) -
     let mut fold = Fold { binary: &binary, costs, soup: &soup, masked, tree: Tree::default() };
     fold.run();
     let mut tree = fold.tree;
+    tree.serial = 1 + TREES.fetch_add(1, Ordering::Relaxed);
     tree.stack_need = stack_need(&tree.nodes);
     let size = |t: &Triangle| t.v0.abs().max(t.v1.abs()).max(t.v2.abs()).max_element();
     tree.reach = soup.triangles.iter().map(size).fold(0.0, f32::max);

@@ -11,11 +11,12 @@ use crate::tree::{Child, Tree};
 use crate::walk::{Apart, Solid, Walker};
 use glam::Vec3;
 
-/// Reciprocals beyond this belong to directions that a packet does not take.
-const STEEPEST: f32 = 1.0e18;
+/// Directions with a component below this go alone: its reciprocal is too large.
+const STEEPEST: f32 = 1.0e-18;
 
-/// Reciprocals below this belong to directions longer than a unit.
-const LEAST: f32 = 0.999;
+/// Components of a unit direction, and sums of three of them, stay below these.
+const LARGEST_UNIT: f32 = 1.001;
+const LONGEST: f32 = 1.74;
 
 /// What a thread keeps between fans. It changes how fast answers come, never what they are.
 #[derive(Debug)]
@@ -108,15 +109,16 @@ impl Job for OccludedFan<'_> {
     fn run<P: Path>(self) {
         let OccludedFan { tree, directions, solid, state, blocked } = self;
         let FanState { scratch, queue } = state;
-        scratch.sights.start(directions.origin);
+        scratch.start(tree, directions.origin);
         queue.start();
-        while let Some(group) = queue.next::<P::Rays>(&directions) {
-            let stopped = match packet::<P::Rays>(tree, directions.origin, &group) {
+        while queue.advance::<P::Rays>(&directions) {
+            let group = &queue.group;
+            let stopped = match packet::<P::Rays>(tree, directions.origin, group) {
                 Some(packet) => {
                     let cell = Occluders::cell(packet.octant, group.middle::<P::Rays>());
                     Walk { tree, packet, solid, cell }.blocked::<P>(group.alive, scratch)
                 }
-                None => strangers(tree, &directions, &group, solid, scratch),
+                None => strangers(tree, &directions, group, solid, scratch),
             };
             group.mark(stopped, blocked);
         }
@@ -128,27 +130,25 @@ impl Job for OccludedFan<'_> {
 fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, group: &'a Group) -> Option<Packet<'a, R>> {
     let [x, y, z] = &group.directions;
     let direction = [R::load(x), R::load(y), R::load(z)];
-    let one = R::splat(1.0);
-    let inverse = [one.div(direction[0]), one.div(direction[1]), one.div(direction[2])];
-    let (steepest, least) = (R::splat(STEEPEST), R::splat(LEAST));
-    let all = (1u32 << R::N) - 1;
-    let (mut range, mut usual) = ([(0.0, 0.0); 3], all);
-    for axis in 0..3 {
-        let size = inverse[axis].abs();
-        usual &= steepest.above(size) & size.above(least);
-        range[axis] = (inverse[axis].lowest(), inverse[axis].highest());
-    }
-    if usual != all {
-        return None;
-    }
-    let bit = |axis: usize| usize::from(range[axis].0 < 0.0) << axis;
-    let octant = bit(0) | bit(1) | bit(2);
     let least = Vec3::new(direction[0].lowest(), direction[1].lowest(), direction[2].lowest());
     let most = Vec3::new(direction[0].highest(), direction[1].highest(), direction[2].highest());
+    let steepest = least.abs().min(most.abs()).min_element();
+    let length = direction[0].abs().add(direction[1].abs()).add(direction[2].abs());
+    // False where a component is not a number, so that the ranges hold.
+    let numbers = R::splat(LONGEST).above(length) == (1u32 << R::N) - 1;
+    if !numbers || steepest < STEEPEST || least.abs().max(most.abs()).max_element() > LARGEST_UNIT {
+        return None;
+    }
+    let one = R::splat(1.0);
+    let inverse = [one.div(direction[0]), one.div(direction[1]), one.div(direction[2])];
     let mut inverse_each = [[0.0; WIDEST]; 3];
     for axis in 0..3 {
         inverse[axis].store(&mut inverse_each[axis]);
     }
+    // Of one sign, so that the reciprocals of the bounds bound the reciprocals, rounding included.
+    let (low, high) = (most.recip(), least.recip());
+    let range = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
+    let octant = group.octant;
     let apart = Apart::new(tree, origin, octant);
     Some(Packet { direction, inverse, each: &group.directions, inverse_each, octant, apart, least, most, range })
 }

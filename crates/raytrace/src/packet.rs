@@ -3,7 +3,7 @@
 use crate::block::{candidates_between, dot};
 use crate::lanes::{Lanes, Path};
 use crate::ray::Line;
-use crate::sight::{Occluders, Plane3, Sights};
+use crate::sight::{Occluders, PER_CELL, Plane3, Sights};
 use crate::tree::{Child, Node, Tree, WIDTH};
 use crate::walk::{Apart, LATER, PERMUTED, Solid, View, Walker, blocked, blocked_for_sure, planes};
 use glam::Vec3;
@@ -25,11 +25,28 @@ pub(crate) struct Scratch {
     /// Rays (high half) and child (low half) still to visit.
     waiting: Vec<u64>,
     stack: Vec<u32>,
+    /// The tree of the last fan.
+    serial: u64,
 }
 
 impl Scratch {
     pub(crate) fn new() -> Scratch {
-        Scratch { sights: Sights::new(), occluders: Occluders::new(), waiting: Vec::new(), stack: Vec::new() }
+        Scratch {
+            sights: Sights::new(),
+            occluders: Occluders::new(),
+            waiting: Vec::new(),
+            stack: Vec::new(),
+            serial: 0,
+        }
+    }
+
+    /// Makes ready for a fan.
+    pub(crate) fn start(&mut self, tree: &Tree, origin: Vec3) {
+        self.sights.start(origin);
+        if self.serial != tree.serial {
+            self.serial = tree.serial;
+            self.occluders.clear();
+        }
     }
 }
 
@@ -87,10 +104,17 @@ impl<R: Lanes> Walk<'_, R> {
     /// Tries what blocked the last rays that went this way; returns the rays it leaves.
     #[inline(always)]
     fn try_occluders<P: Path<Rays = R>>(&self, alive: u32, scratch: &mut Scratch) -> u32 {
+        let Scratch { sights, occluders, .. } = scratch;
         let mut open = alive;
-        for (block, lane) in scratch.occluders.known(self.tree, self.cell) {
-            let seen = scratch.sights.view::<P::Four>(self.tree, block);
+        for index in 0..PER_CELL {
+            let Some((block, lane)) = occluders.get(self.cell, index) else {
+                continue;
+            };
+            let seen = sights.view::<P::Four>(self.tree, block);
             let (_, sure) = self.meets(&Plane3::of(seen, lane));
+            if sure & open == 0 {
+                occluders.forget(self.cell, index);
+            }
             open &= !sure;
             if open == 0 {
                 break;

@@ -23,18 +23,21 @@ impl Directions<'_> {
 }
 
 /// Rays of one octant; those past the last alive one repeat the first.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(crate) struct Group {
     pub(crate) directions: [Many; 3],
     /// Places in the list of directions.
     pub(crate) numbers: [u32; WIDEST],
     pub(crate) alive: u32,
+    /// One bit per axis: set where the directions are negative.
+    pub(crate) octant: usize,
     /// Whether the rays are neighbours in the list.
     neighbours: bool,
 }
 
 impl Group {
-    const EMPTY: Group = Group { directions: [[1.0; WIDEST]; 3], numbers: [0; WIDEST], alive: 0, neighbours: false };
+    const EMPTY: Group =
+        Group { directions: [[1.0; WIDEST]; 3], numbers: [0; WIDEST], alive: 0, octant: 0, neighbours: false };
 
     /// The direction that stands for the group.
     #[inline(always)]
@@ -80,18 +83,17 @@ impl Bin {
     }
 
     /// Takes the last rays, as many as a packet holds.
-    fn take(&mut self, width: usize) -> Group {
+    fn take(&mut self, width: usize, group: &mut Group) {
         let first = self.n.saturating_sub(width);
         let n = self.n - first;
-        let mut group = Group::EMPTY;
         for axis in 0..3 {
             group.directions[axis][..n].copy_from_slice(&self.directions[axis][first..self.n]);
             group.directions[axis][n..].fill(self.directions[axis][first]);
         }
         group.numbers[..n].copy_from_slice(&self.numbers[first..self.n]);
         group.alive = (1 << n) - 1;
+        group.neighbours = false;
         self.n = first;
-        group
     }
 }
 
@@ -102,11 +104,13 @@ pub(crate) struct Queue {
     next: usize,
     /// The octant whose bin may be full.
     full: Option<usize>,
+    /// The group under way, filled in place: it is read at once, and copies would wait for the writes.
+    pub(crate) group: Group,
 }
 
 impl Queue {
     pub(crate) fn new() -> Queue {
-        Queue { bins: [Bin::EMPTY; 8], next: 0, full: None }
+        Queue { bins: [Bin::EMPTY; 8], next: 0, full: None, group: Group::EMPTY }
     }
 
     pub(crate) fn start(&mut self) {
@@ -115,23 +119,54 @@ impl Queue {
         self.bins.iter_mut().for_each(|bin| bin.n = 0);
     }
 
-    /// The next group: neighbours where they go into one octant, else rays that have come together.
+    /// Fills the next group: neighbours where they go into one octant, else rays that have come together.
     #[inline(always)]
-    pub(crate) fn next<R: Lanes>(&mut self, directions: &Directions<'_>) -> Option<Group> {
+    pub(crate) fn advance<R: Lanes>(&mut self, directions: &Directions<'_>) -> bool {
         while self.full.is_none() && self.next < directions.len() {
             let first = self.next;
             self.next += R::N;
-            if self.next <= directions.len()
-                && let Some(group) = neighbours::<R>(directions, first)
-            {
-                return Some(group);
+            if self.next <= directions.len() && self.neighbours::<R>(directions, first) {
+                return true;
             }
             self.sort_in(directions, first, R::N);
         }
-        let octant = self.full.take().or_else(|| (0..8).find(|&octant| self.bins[octant].n > 0))?;
-        let group = self.bins[octant].take(R::N);
-        self.full = (0..8).find(|&octant| self.bins[octant].n >= R::N);
-        Some(group)
+        self.advance_in_bins(R::N)
+    }
+
+    /// Takes as many neighbours as a packet holds, if they go into one octant.
+    #[inline(always)]
+    fn neighbours<R: Lanes>(&mut self, directions: &Directions<'_>, first: usize) -> bool {
+        let zero = R::splat(0.0);
+        let all = (1u32 << R::N) - 1;
+        let mut octant = 0;
+        for axis in 0..3 {
+            let row = R::load(&directions.each[axis][first..]);
+            let negative = zero.above(row);
+            if negative != 0 && negative != all {
+                return false;
+            }
+            octant |= usize::from(negative != 0) << axis;
+            row.store(&mut self.group.directions[axis]);
+        }
+        for (number, i) in self.group.numbers[..R::N].iter_mut().zip(first as u32..) {
+            *number = i;
+        }
+        self.group.alive = all;
+        self.group.octant = octant;
+        self.group.neighbours = true;
+        true
+    }
+
+    /// Takes rays that have come together in an octant.
+    #[inline(never)]
+    fn advance_in_bins(&mut self, width: usize) -> bool {
+        let Some(octant) = self.full.take().or_else(|| (0..8).find(|&octant| self.bins[octant].n > 0)) else {
+            return false;
+        };
+        self.bins[octant].take(width, &mut self.group);
+        self.group.octant = octant;
+        self.full = (0..8).find(|&octant| self.bins[octant].n >= width);
+        true
     }
 
     /// Leaves some neighbours with others of their octants.
@@ -146,26 +181,4 @@ impl Queue {
             }
         }
     }
-}
-
-/// A packet's width of neighbours, if they go into one octant.
-#[inline(always)]
-fn neighbours<R: Lanes>(directions: &Directions<'_>, first: usize) -> Option<Group> {
-    let zero = R::splat(0.0);
-    let mut group = Group::EMPTY;
-    let all = (1u32 << R::N) - 1;
-    for axis in 0..3 {
-        let row = R::load(&directions.each[axis][first..]);
-        let negative = zero.above(row);
-        if negative != 0 && negative != all {
-            return None;
-        }
-        row.store(&mut group.directions[axis]);
-    }
-    for (number, i) in group.numbers[..R::N].iter_mut().zip(first as u32..) {
-        *number = i;
-    }
-    group.alive = all;
-    group.neighbours = true;
-    Some(group)
 }

@@ -54,7 +54,7 @@ impl View for Sights {
 const CELLS: usize = 8;
 
 /// Occluders remembered in a cell.
-const PER_CELL: usize = 2;
+pub(crate) const PER_CELL: usize = 2;
 
 /// Block and lane of a triangle.
 type Place = (u32, u32);
@@ -104,15 +104,22 @@ impl Occluders {
         (octant * CELLS + along(x)) * CELLS + along(y)
     }
 
-    /// The triangles remembered in a cell that this tree has: the state may come from another tracer.
+    /// Forgets everything: another tracer.
+    pub(crate) fn clear(&mut self) {
+        self.cells.fill([NOWHERE; PER_CELL]);
+    }
+
+    /// One of the triangles remembered in a cell: its block and lane.
     #[inline(always)]
-    pub(crate) fn known(&self, tree: &Tree, cell: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let blocks = tree.blocks.as_slice();
-        let known = self.cells[cell].map(|(index, lane)| {
-            let block = blocks.get(index as usize)?;
-            ((block.valid & !block.masked) >> lane & 1 == 1).then_some((index as usize, lane as usize))
-        });
-        known.into_iter().flatten()
+    pub(crate) fn get(&self, cell: usize, index: usize) -> Option<(usize, usize)> {
+        let place = self.cells[cell][index];
+        (place != NOWHERE).then_some((place.0 as usize, place.1 as usize))
+    }
+
+    /// Forgets a triangle that was tried in vain.
+    #[inline(always)]
+    pub(crate) fn forget(&mut self, cell: usize, index: usize) {
+        self.cells[cell][index] = NOWHERE;
     }
 
     /// Remembers a triangle that blocked.

@@ -107,6 +107,8 @@ pub(crate) struct Tree {
     pub(crate) blocks: Vec<Block>,
     /// Entries that a walk can have waiting at once.
     pub(crate) stack_need: usize,
+    /// A number that no other tree of this process has; 0 where there is none.
+    pub(crate) serial: u64,
     /// Largest coordinate of any corner, by amount.
     pub(crate) reach: f32,
 }
