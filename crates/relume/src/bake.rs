@@ -3,7 +3,8 @@
 use crate::console::Console;
 use crate::settings::BakeOptions;
 use crate::source::SceneOptions;
-use crate::{Usage, interrupt, output};
+use crate::usage::Usage;
+use crate::{interrupt, output};
 use anyhow::{Context, Result};
 use coeff_io::{Prt, Quality};
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! Which view is drawn: a camera of the scene by name, or one of the user's own.
 
-use crate::Usage;
+use crate::usage::Usage;
 use anyhow::Result;
 
 /// A view as typed.

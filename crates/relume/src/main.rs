@@ -17,23 +17,13 @@ mod reference;
 mod render;
 mod settings;
 mod source;
+mod usage;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
 use console::Console;
 use std::process::ExitCode;
-
-/// Wrong usage that only shows when a file is open; ends with exit code 2, as clap's own complaints do.
-#[derive(Debug)]
-struct Usage(String);
-
-impl std::fmt::Display for Usage {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Usage {}
+use usage::Usage;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();

@@ -89,7 +89,7 @@ struct LightFacts {
 
 impl LightFacts {
     fn of(environment: &Environment) -> Result<Self> {
-        let bands = source::bands(&LIGHT_BANDS.to_string()).map_err(crate::Usage)?;
+        let bands = source::bands(&LIGHT_BANDS.to_string()).map_err(crate::usage::Usage)?;
         let light = sh_math::project(bands, environment.samples());
         Ok(Self { name: environment.name.clone(), lamps: environment.lamps.len(), share: shares(bands, &light) })
     }

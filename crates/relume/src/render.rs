@@ -82,7 +82,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         supersample: options.supersample,
         sky: options.background == Background::Sky,
     };
-    frame.check().map_err(|error| crate::Usage(error.to_string()))?;
+    frame.check().map_err(|error| crate::usage::Usage(error.to_string()))?;
     let environment = options.probe.load(console)?;
     let mut drawer = Drawer::open(options.backend, &prt, &environment, console)?;
     match options.frames {

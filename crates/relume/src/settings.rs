@@ -1,6 +1,6 @@
 //! The options that say how to bake, and the settings that they stand for.
 
-use crate::Usage;
+use crate::usage::Usage;
 use anyhow::Result;
 use bake::settings;
 use coeff_io::{Bounces, Effect, Effects, Quality, Sampler, Settings};

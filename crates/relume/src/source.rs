@@ -1,7 +1,7 @@
 //! Where scenes, light probes and baked files come from: a path or `builtin:NAME`.
 
-use crate::Usage;
 use crate::console::Console;
+use crate::usage::Usage;
 use anyhow::{Context, Result};
 use coeff_io::Prt;
 use probe_io::{Environment, Layout, LoadOptions, Negatives};
