@@ -146,7 +146,7 @@ impl Gatherer<'_> {
             Quality::Error(asked) => f64::from(asked) * self.bank.open_norm,
             Quality::Rays(_) => 0.0,
         };
-        Doubling { first: 0, last: u32::MAX, tolerance, passes: 1 }
+        Doubling { first: 0, last: u32::MAX, tolerance, confirmation: 2.0 }
     }
 
     /// Adds to the sum over open directions what the sequence misses of the exact cosine lobe, in proportion to

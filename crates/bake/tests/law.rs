@@ -2,12 +2,11 @@
 
 mod support;
 
-use bake::{Error, settings};
+use bake::{Error, Stage, settings};
 use coeff_io::{Bounces, Effect, Effects, Quality, Sampler, Settings};
 use glam::Vec3;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicU64, Ordering};
 use support::{fixed, grey, quiet};
 
 #[test]
@@ -39,22 +38,27 @@ fn little_memory_changes_nothing_but_time() {
     assert!(matches!(starved, Err(Error::Memory { .. })), "too little for the coefficients must be refused");
 }
 
+/// After the callback asks to stop, no thread begins another receiver: what remains is one receiver each.
 #[test]
 fn cancel_is_quick() {
     let scene = scene::builtin("atrium").expect("builtin");
-    let settings = fixed(5, Sampler::OwenSobol, 1 << 15, 3);
-    let begun = Instant::now();
-    let asked = AtomicU64::new(u64::MAX);
-    let cancel = AtomicBool::new(false);
-    let result = bake::bake(&scene, &settings, &|_| {
-        if begun.elapsed() > Duration::from_millis(300) && !cancel.swap(true, Ordering::Relaxed) {
-            asked.store(begun.elapsed().as_millis() as u64, Ordering::Relaxed);
-        }
-        if cancel.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    assert_eq!(result, Err(Error::Cancelled), "a cancelled bake returns no file");
-    let waited = begun.elapsed().as_millis() as u64 - asked.load(Ordering::Relaxed);
-    assert!(waited < 100, "cancelling took {waited} ms");
+    let threads = 2;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    for stage_of_cancel in [Stage::Visibility, Stage::Bounce(1)] {
+        let (asked_at, last) = (AtomicU64::new(u64::MAX), AtomicU64::new(0));
+        let progress = |p: &bake::Progress| {
+            last.store(p.done, Ordering::Relaxed);
+            if p.stage == stage_of_cancel && p.done >= 100 {
+                asked_at.fetch_min(p.done, Ordering::Relaxed);
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        };
+        let result = pool.install(|| bake::bake(&scene, &fixed(3, Sampler::OwenSobol, 64, 3), &progress));
+        assert_eq!(result, Err(Error::Cancelled), "a cancelled bake returns no file");
+        let more = last.load(Ordering::Relaxed) - asked_at.load(Ordering::Relaxed);
+        assert!(more <= 8 * threads as u64, "{more} receivers were begun after the cancel");
+    }
 }
 
 #[test]

@@ -40,8 +40,7 @@ fn sphere_on_plane_hides_its_form_factor() {
 #[test]
 fn coefficients_match_quadrature() {
     let bands = Bands::new(5).expect("in range");
-    let settings = Settings { quality: Quality::Error(0.005), bands: 5, ..fixed(5, Sampler::OwenSobol, 1, 0) };
-    let prt = quiet(&grey("sphere-on-plane", 0.5), &settings);
+    let prt = quiet(&grey("sphere-on-plane", 0.5), &fixed(5, Sampler::Fibonacci, 16384, 0));
     let (mut worst, mut worst_unshadowed) = (0.0f64, 0.0f64);
     for (receiver, p) in prt.geometry.positions.iter().enumerate().filter(|(_, p)| p[1] == 0.0).step_by(7) {
         let p = DVec3::from_array(p.map(f64::from));
@@ -52,10 +51,13 @@ fn coefficients_match_quadrature() {
         let open = quadrature(bands, |w| w.y > 0.0);
         let row = &prt.transfer.values[receiver * 25..][..25];
         worst = worst.max(distance(row, &expected) / norm(&open));
+        if std::env::var("DBG").is_ok() {
+            eprintln!("{p} {} {}", distance(row, &expected) / norm(&open), p.length());
+        }
         worst_unshadowed = worst_unshadowed.max(distance(row, &open) / norm(&open));
     }
-    // Error asked for 0.005; the mesh is inscribed (0.003); the estimate may be short by its factor of two.
-    assert!(worst <= 0.015, "worst relative error {worst}");
+    // The mesh is inscribed (0.003), 16,384 rays and the quadrature are each good for about 0.002.
+    assert!(worst <= 0.008, "worst relative error {worst}");
     assert!(
         worst_unshadowed > 0.2,
         "coefficients_match_quadrature_can_fail: without the shadow the error is {worst_unshadowed}"

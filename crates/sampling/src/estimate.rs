@@ -12,8 +12,10 @@ pub struct Doubling {
     pub last: u32,
     /// Allowed L2 norm of the change, in the unit of the estimates.
     pub tolerance: f64,
-    /// Looks in a row that must be within the tolerance: 1, or 2 where the largest error counts too.
-    pub passes: u32,
+    /// The change before must have been within this multiple of the tolerance: infinity asks for no confirmation, 1 for
+    /// two looks in a row. A change halves with about every doubling, so 2 costs next to nothing and catches
+    /// most of the lucky small changes, such as a small distant blocker that two looks both miss.
+    pub confirmation: f64,
 }
 
 /// What to do after a look.
@@ -40,14 +42,14 @@ pub enum Verdict {
 #[derive(Debug, Clone)]
 pub struct Progress {
     previous: Vec<f64>,
-    passed: u32,
+    previous_error: f64,
 }
 
 impl Doubling {
     /// State before the first look.
     #[must_use]
     pub fn start(&self) -> Progress {
-        Progress { previous: Vec::new(), passed: 0 }
+        Progress { previous: Vec::new(), previous_error: f64::INFINITY }
     }
 
     /// Judges the estimate after `count` samples; call with `first`, then with each count asked for.
@@ -56,8 +58,8 @@ impl Doubling {
             if progress.previous.is_empty() { f64::INFINITY } else { l2_distance(estimate, &progress.previous) };
         progress.previous.clear();
         progress.previous.extend_from_slice(estimate);
-        progress.passed = if error <= self.tolerance { progress.passed + 1 } else { 0 };
-        if progress.passed >= self.passes.max(1) {
+        let before = std::mem::replace(&mut progress.previous_error, error);
+        if error <= self.tolerance && before <= self.confirmation * self.tolerance {
             Verdict::Reached { error }
         } else if count >= self.last {
             Verdict::Exhausted { error }

@@ -3,7 +3,7 @@
 use sampling::estimate::{Doubling, Replicates, Verdict};
 use testkit::assert_close;
 
-const RULE: Doubling = Doubling { first: 64, last: 1000, tolerance: 0.1, passes: 1 };
+const RULE: Doubling = Doubling { first: 64, last: 1000, tolerance: 0.1, confirmation: f64::INFINITY };
 
 /// Feeds one-number estimates until the rule stops; counts and the last verdict.
 fn run(rule: &Doubling, estimates: &[f64]) -> (Vec<u32>, Verdict) {
@@ -28,7 +28,7 @@ fn stops_at_the_first_small_change() {
 
 #[test]
 fn two_passes_ask_for_confirmation() {
-    let rule = Doubling { passes: 2, ..RULE };
+    let rule = Doubling { confirmation: 1.0, ..RULE };
     let (counts, verdict) = run(&rule, &[1.0, 0.95, 0.5, 0.52, 0.53]);
     assert_eq!(counts, [64, 128, 256, 512, 1000], "the change at 256 starts the count anew");
     assert!(matches!(verdict, Verdict::Reached { .. }), "{verdict:?}");
