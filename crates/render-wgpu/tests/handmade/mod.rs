@@ -169,7 +169,7 @@ fn textures() -> Vec<Texture> {
             [wave(9.0 * u), wave(7.0 * v), wave(5.0 * u + 6.0 * v), 1.0]
         }),
         texture("metal", [8, 8], [Wrap::Clamp, Wrap::Repeat], move |u, v| [0.0, wave(6.0 * u), wave(9.0 * v), 1.0]),
-        texture("bumps", [16, 16], [Wrap::Repeat; 2], move |u, v| [wave(6.28 * u), wave(12.56 * v), 1.0, 1.0]),
+        texture("bumps", [16, 16], [Wrap::Repeat; 2], move |u, v| [wave(6.0 * u), wave(12.0 * v), 1.0, 1.0]),
         texture("leaf", [8, 8], [Wrap::Mirror, Wrap::Clamp], move |u, v| {
             [0.3, 0.8, 0.2, wave(9.0 * u) * wave(8.0 * v)]
         }),
