@@ -8,6 +8,9 @@ use handmade::{add_triangles, camera, empty, quad, wall, white};
 use probe_io::Environment;
 use render_cpu::{Error, Frame, render};
 
+/// What the refusal must say, and what breaks a sound thing.
+type Edit<T> = (&'static str, fn(&mut T));
+
 fn frame() -> Frame {
     Frame::plain(camera([0.0, 0.0, 3.0], [0.0; 3]), 20, 10)
 }
@@ -18,7 +21,7 @@ fn sky() -> Environment {
 
 #[test]
 fn frames_out_of_range_are_refused() {
-    let edits: [(&str, fn(&mut Frame)); 11] = [
+    let edits: [Edit<Frame>; 11] = [
         ("0 x 10", |f| f.width = 0),
         ("20 x 0", |f| f.height = 0),
         ("16385", |f| f.width = 16_385),
@@ -44,7 +47,7 @@ fn frames_out_of_range_are_refused() {
 
 #[test]
 fn scenes_that_contradict_themselves_are_refused() {
-    let edits: [(&str, fn(&mut Prt)); 8] = [
+    let edits: [Edit<Prt>; 8] = [
         ("transfer values", |p| p.transfer.values.truncate(5)),
         ("channels", |p| p.transfer.channels = 2),
         ("triangle 1", |p| p.geometry.triangles[1][2] = 99),
