@@ -156,6 +156,7 @@ impl Fold<'_> {
                 let aabb = *self.binary.nodes[member].aabb();
                 let node = &mut self.tree.nodes[wide];
                 node.children[slot] = child;
+                node.present |= 1 << slot;
                 for axis in 0..3 {
                     node.bounds[axis][slot] = aabb.min[axis];
                     node.bounds[axis + 3][slot] = aabb.max[axis];

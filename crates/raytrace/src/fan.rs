@@ -1,9 +1,9 @@
-//! Many rays from one point: packets of those that go the same way.
+//! Many rays from one point: packets of neighbours in the list.
 
+use crate::group::{Directions, Group};
 use crate::lanes::{Lanes, Path, Portable};
 use crate::level::{Job, dispatch};
-use crate::packet::{Packet, Scratch, WIDEST, Walk, alone};
-use crate::queue::{Directions, Group, Queue};
+use crate::packet::{Many, Packet, Scratch, WIDEST, Walk, alone};
 use crate::ray::{Hit, LARGEST, Line};
 use crate::sight::Occluders;
 use crate::tracer::Tracer;
@@ -22,13 +22,13 @@ const LONGEST: f32 = 1.74;
 #[derive(Debug)]
 pub struct FanState {
     scratch: Scratch,
-    queue: Queue,
+    group: Group,
 }
 
 impl FanState {
     /// An empty state.
     pub fn new() -> FanState {
-        FanState { scratch: Scratch::new(), queue: Queue::new() }
+        FanState { scratch: Scratch::new(), group: Group::new() }
     }
 }
 
@@ -108,12 +108,11 @@ impl Job for OccludedFan<'_> {
     #[inline(always)]
     fn run<P: Path>(self) {
         let OccludedFan { tree, directions, solid, state, blocked } = self;
-        let FanState { scratch, queue } = state;
+        let FanState { scratch, group } = state;
         scratch.start(tree, directions.origin);
-        queue.start();
-        while queue.advance::<P::Rays>(&directions) {
-            let group = &queue.group;
-            let stopped = match packet::<P::Rays>(tree, directions.origin, group) {
+        for first in (0..directions.len()).step_by(P::Rays::N) {
+            group.fill::<P::Rays>(&directions, first);
+            let stopped = match packet::<P::Rays>(tree, directions.origin, &group.directions) {
                 Some(packet) => {
                     let cell = Occluders::cell(packet.octant, group.middle::<P::Rays>());
                     Walk { tree, packet, solid, cell }.blocked::<P>(group.alive, scratch)
@@ -127,16 +126,16 @@ impl Job for OccludedFan<'_> {
 
 /// A packet of a group; None where a ray goes along an axis or is no unit direction.
 #[inline(always)]
-fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, group: &'a Group) -> Option<Packet<'a, R>> {
-    let [x, y, z] = &group.directions;
+fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, each: &'a [Many; 3]) -> Option<Packet<'a, R>> {
+    let [x, y, z] = each;
     let direction = [R::load(x), R::load(y), R::load(z)];
     let least = Vec3::new(direction[0].lowest(), direction[1].lowest(), direction[2].lowest());
     let most = Vec3::new(direction[0].highest(), direction[1].highest(), direction[2].highest());
-    let steepest = least.abs().min(most.abs()).min_element();
-    let length = direction[0].abs().add(direction[1].abs()).add(direction[2].abs());
-    // False where a component is not a number, so that the ranges hold.
-    let numbers = R::splat(LONGEST).above(length) == (1u32 << R::N) - 1;
-    if !numbers || steepest < STEEPEST || least.abs().max(most.abs()).max_element() > LARGEST_UNIT {
+    let size = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
+    let (steepest, longest) = (size[0].min(size[1]).min(size[2]), size[0].add(size[1]).add(size[2]));
+    // Both false where a component is not a number, so that the ranges hold.
+    let usual = steepest.above(R::splat(STEEPEST)) & R::splat(LONGEST).above(longest);
+    if usual != (1u32 << R::N) - 1 || least.abs().max(most.abs()).max_element() > LARGEST_UNIT {
         return None;
     }
     let one = R::splat(1.0);
@@ -145,12 +144,22 @@ fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, group: &'a Group) -> Option<P
     for axis in 0..3 {
         inverse[axis].store(&mut inverse_each[axis]);
     }
-    // Of one sign, so that the reciprocals of the bounds bound the reciprocals, rounding included.
+    let (negative, positive) = (least.cmplt(Vec3::ZERO).bitmask(), most.cmpgt(Vec3::ZERO).bitmask());
+    let mixed = (negative & positive) as usize;
+    // Where all are of one sign the reciprocals of the bounds bound the reciprocals, rounding included.
     let (low, high) = (most.recip(), least.recip());
-    let range = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
-    let octant = group.octant;
-    let apart = Apart::new(tree, origin, octant);
-    Some(Packet { direction, inverse, each: &group.directions, inverse_each, octant, apart, least, most, range })
+    Some(Packet {
+        direction,
+        inverse,
+        each,
+        inverse_each,
+        octant: negative as usize & !mixed,
+        mixed,
+        apart: Apart::new(tree, origin),
+        least,
+        most,
+        range: [(low.x, high.x), (low.y, high.y), (low.z, high.z)],
+    })
 }
 
 /// Rays that no packet takes: one by one.
@@ -159,7 +168,7 @@ fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, group: &'a Group) -> Option<P
 fn strangers(tree: &Tree, directions: &Directions<'_>, group: &Group, solid: Solid<'_>, scratch: &mut Scratch) -> u32 {
     let mut stopped = 0;
     for i in (0..WIDEST).filter(|i| group.alive >> i & 1 == 1) {
-        if let Some(line) = Line::new(&directions.ray(group.numbers[i] as usize)) {
+        if let Some(line) = Line::new(&directions.ray(group.first + i)) {
             let walker = Walker::new(tree, line);
             stopped |= u32::from(alone::<Portable>(tree, &walker, Child::node(0), solid, 0, scratch)) << i;
         }

@@ -1,11 +1,11 @@
-//! A packet of rays from one point into one octant through the tree; the last few alive go on alone.
+//! A packet of rays from one point through the tree; the last few alive go on alone.
 
 use crate::block::{candidates_between, dot};
 use crate::lanes::{Lanes, Path};
 use crate::ray::Line;
 use crate::sight::{Occluders, PER_CELL, Plane3, Sights};
 use crate::tree::{Child, Node, Tree, WIDTH};
-use crate::walk::{Apart, LATER, PERMUTED, Solid, View, Walker, blocked, blocked_for_sure, planes};
+use crate::walk::{Apart, LATER, PERMUTED, Solid, View, Walker, blocked, blocked_for_sure};
 use glam::Vec3;
 
 /// Packets with at most this many rays left are walked ray by ray.
@@ -50,19 +50,22 @@ impl Scratch {
     }
 }
 
-/// Rays side by side, all from one origin into one octant, with finite reciprocals.
+/// Rays side by side, all from one origin, with finite reciprocals.
 pub(crate) struct Packet<'a, R> {
     pub(crate) direction: [R; 3],
     pub(crate) inverse: [R; 3],
     /// The same directions and reciprocals, one by one.
     pub(crate) each: &'a [Many; 3],
     pub(crate) inverse_each: [Many; 3],
+    /// One bit per axis: set where all directions are negative.
     pub(crate) octant: usize,
+    /// One bit per axis: set where directions of both signs meet.
+    pub(crate) mixed: usize,
     pub(crate) apart: Apart,
     /// Corners of the box around the directions.
     pub(crate) least: Vec3,
     pub(crate) most: Vec3,
-    /// Least and greatest reciprocal of each axis.
+    /// Least and greatest reciprocal of each axis that is not mixed.
     pub(crate) range: [(f32, f32); 3],
 }
 
@@ -190,7 +193,9 @@ impl<R: Lanes> Walk<'_, R> {
     #[inline(always)]
     fn descend<P: Path>(&self, node: &Node, mask: u32, waiting: &mut Vec<u64>) {
         let boxes = Boxes::<P::Eight>::of(node, &self.packet);
+        // Empty boxes pass where an axis tells nothing, and so would all boxes.
         let (some, all) = boxes.met();
+        let (some, all) = (some & node.present, if self.packet.mixed == 0 { all } else { 0 });
         let mut planes = Planes::default();
         if some & !all != 0 {
             boxes.store(&mut planes);
@@ -214,8 +219,11 @@ impl<R: Lanes> Walk<'_, R> {
         let mut near = R::splat(0.0);
         let mut far = R::splat(f32::INFINITY);
         for axis in 0..3 {
-            near = R::splat(planes.enter[axis][slot]).mul(self.packet.inverse[axis]).max(near);
-            far = R::splat(planes.leave[axis][slot]).mul(self.packet.inverse[axis]).min(far);
+            let enter = R::splat(planes.enter[axis][slot]).mul(self.packet.inverse[axis]);
+            let leave = R::splat(planes.leave[axis][slot]).mul(self.packet.inverse[axis]);
+            let mixed = self.packet.mixed >> axis & 1 == 1;
+            near = if mixed { enter.min(leave).max(near) } else { enter.max(near) };
+            far = if mixed { enter.max(leave).min(far) } else { leave.min(far) };
         }
         !near.above(far.mul(R::splat(LATER)))
     }
@@ -229,7 +237,7 @@ impl<R: Lanes> Walk<'_, R> {
             let ray = rays.trailing_zeros() as usize;
             rays &= rays - 1;
             let line = self.line(ray, scratch.sights.origin);
-            let walker = Walker { line, octant: self.packet.octant, apart: self.packet.apart, end: f32::INFINITY };
+            let walker = Walker { line, octant: line.octant(), apart: self.packet.apart, end: f32::INFINITY };
             stopped |= u32::from(alone::<P>(self.tree, &walker, from, self.solid, self.cell, scratch)) << ray;
         }
         stopped
@@ -268,19 +276,21 @@ struct Boxes<E> {
 impl<E: Lanes> Boxes<E> {
     #[inline(always)]
     fn of<R>(node: &Node, packet: &Packet<'_, R>) -> Boxes<E> {
-        let (entry, exit) = planes(packet.octant);
         let (zero, endless) = (E::splat(0.0), E::splat(f32::INFINITY));
         let mut boxes = Boxes { enter: [zero; 3], leave: [zero; 3], near: (zero, zero), far: (endless, endless) };
         for axis in 0..3 {
-            let enter = E::load(&node.bounds[entry[axis]]).sub(E::splat(packet.apart.near[axis]));
-            let leave = E::load(&node.bounds[exit[axis]]).sub(E::splat(packet.apart.far[axis]));
+            let (enter, leave) = packet.apart.planes::<E>(node, packet.octant, axis);
+            boxes.enter[axis] = enter;
+            boxes.leave[axis] = leave;
+            if packet.mixed >> axis & 1 == 1 {
+                // Reciprocals of both signs have no bounds: this axis tells nothing.
+                continue;
+            }
             let (least, most) = (E::splat(packet.range[axis].0), E::splat(packet.range[axis].1));
             let (a, b) = (enter.mul(least), enter.mul(most));
             let (c, d) = (leave.mul(least), leave.mul(most));
             boxes.near = (a.min(b).max(boxes.near.0), a.max(b).max(boxes.near.1));
             boxes.far = (c.min(d).min(boxes.far.0), c.max(d).min(boxes.far.1));
-            boxes.enter[axis] = enter;
-            boxes.leave[axis] = leave;
         }
         boxes
     }

@@ -55,6 +55,8 @@ impl Child {
 pub(crate) struct Node {
     pub(crate) bounds: [[f32; WIDTH]; 6],
     pub(crate) children: [Child; WIDTH],
+    /// One bit per child that there is.
+    pub(crate) present: u32,
 }
 
 impl Node {
@@ -68,6 +70,7 @@ impl Node {
             [f32::NEG_INFINITY; WIDTH],
         ],
         children: [Child::NONE; WIDTH],
+        present: 0,
     };
 
     /// Lower and upper corner of a child's box.

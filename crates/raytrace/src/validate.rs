@@ -22,6 +22,10 @@ impl Tracer {
                 return Err(format!("node {index} lies deeper than the stack of {}", tree.stack_need));
             }
             let node = &tree.nodes[index];
+            let there = |slot: &usize| node.children[*slot] != Child::NONE;
+            if (0..crate::tree::WIDTH).filter(there).fold(0, |mask, slot| mask | 1 << slot) != node.present {
+                return Err(format!("node {index} miscounts its children"));
+            }
             for slot in (0..crate::tree::WIDTH).filter(|&slot| node.children[slot] != Child::NONE) {
                 let bounds = node.child_bounds(slot);
                 if !within(bounds, outer) {

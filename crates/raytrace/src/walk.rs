@@ -39,31 +39,27 @@ const fn permuted() -> [[u8; 256]; 8] {
     table
 }
 
-/// The origin moved apart for near and far planes, so that every box counts as a little wider.
+/// The origin moved up for lower and down for upper planes, so that every box counts as a little wider.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Apart {
-    pub(crate) near: Vec3,
-    pub(crate) far: Vec3,
+    /// For lower planes, then for upper ones.
+    from: [Vec3; 2],
 }
 
 impl Apart {
     #[inline(always)]
-    pub(crate) fn new(tree: &Tree, origin: Vec3, octant: usize) -> Apart {
+    pub(crate) fn new(tree: &Tree, origin: Vec3) -> Apart {
         let widen = WIDEN * (tree.reach + origin.abs().max_element());
-        let toward = |axis: usize| {
-            if octant >> axis & 1 == 1 { -widen } else { widen }
-        };
-        let step = Vec3::new(toward(0), toward(1), toward(2));
-        Apart { near: origin + step, far: origin - step }
+        Apart { from: [origin + widen, origin - widen] }
     }
-}
 
-/// Rows of `bounds` that a ray of an octant enters and leaves through.
-#[inline(always)]
-pub(crate) fn planes(octant: usize) -> ([usize; 3], [usize; 3]) {
-    let entry = |axis: usize| axis + 3 * (octant >> axis & 1);
-    let exit = |axis: usize| axis + 3 * (1 - (octant >> axis & 1));
-    ([entry(0), entry(1), entry(2)], [exit(0), exit(1), exit(2)])
+    /// The planes by which rays of an octant enter and leave the boxes of a node along an axis, from the origin.
+    #[inline(always)]
+    pub(crate) fn planes<E: Lanes>(&self, node: &Node, octant: usize, axis: usize) -> (E, E) {
+        let (entry, exit) = (octant >> axis & 1, 1 - (octant >> axis & 1));
+        let plane = |side: usize| E::load(&node.bounds[axis + 3 * side]).sub(E::splat(self.from[side][axis]));
+        (plane(entry), plane(exit))
+    }
 }
 
 /// One ray with what its box tests need.
@@ -80,7 +76,7 @@ impl Walker {
     #[inline(always)]
     pub(crate) fn new(tree: &Tree, line: Line) -> Walker {
         let octant = line.octant();
-        let apart = Apart::new(tree, line.origin, octant);
+        let apart = Apart::new(tree, line.origin);
         // Dividing by a power of two is exact; boxes start at zero, the exact test minds t_min.
         Walker { line, octant, apart, end: line.t_max / line.scale }
     }
@@ -88,16 +84,14 @@ impl Walker {
     /// Which children's boxes the ray meets before `end`.
     #[inline(always)]
     pub(crate) fn boxes<E: Lanes>(&self, node: &Node, end: f32) -> u32 {
-        let (entry, exit) = planes(self.octant);
         let mut near = E::splat(0.0);
         let mut far = E::splat(end);
         for axis in 0..3 {
             let inverse = E::splat(self.line.inverse[axis]);
-            let enter = E::load(&node.bounds[entry[axis]]).sub(E::splat(self.apart.near[axis])).mul(inverse);
-            let leave = E::load(&node.bounds[exit[axis]]).sub(E::splat(self.apart.far[axis])).mul(inverse);
+            let (enter, leave) = self.apart.planes::<E>(node, self.octant, axis);
             // Not-a-number (a plane through the origin, a direction within it) leaves the range as it is.
-            near = enter.max(near);
-            far = leave.min(far);
+            near = enter.mul(inverse).max(near);
+            far = leave.mul(inverse).min(far);
         }
         !near.above(far.mul(E::splat(LATER))) & ((1 << WIDTH) - 1)
     }
