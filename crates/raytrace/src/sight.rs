@@ -54,7 +54,7 @@ impl View for Sights {
 const CELLS: usize = 8;
 
 /// Occluders remembered in a cell.
-pub(crate) const PER_CELL: usize = 2;
+pub(crate) const PER_CELL: usize = 4;
 
 /// Block and lane of a triangle.
 type Place = (u32, u32);
