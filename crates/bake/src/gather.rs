@@ -199,14 +199,12 @@ impl Gatherer<'_> {
         worker.wanted.clear();
         worker.wanted.resize(worker.blocked.len(), 0);
         let chosen = blocked.min(wanted);
-        let mut seen = 0;
-        for j in (0..end).filter(|&j| is_set(&worker.blocked, j)) {
+        for (seen, j) in (0..end).filter(|&j| is_set(&worker.blocked, j)).enumerate() {
             // The k-th of the chosen is the first that reaches k / chosen of all blocked.
             let (before, after) = (seen * chosen / blocked, (seen + 1) * chosen / blocked);
             if after > before {
                 worker.wanted[j / 64] |= 1 << (j % 64);
             }
-            seen += 1;
         }
         chosen as u64
     }
