@@ -51,9 +51,6 @@ fn coefficients_match_quadrature() {
         let open = quadrature(bands, |w| w.y > 0.0);
         let row = &prt.transfer.values[receiver * 25..][..25];
         worst = worst.max(distance(row, &expected) / norm(&open));
-        if std::env::var("DBG").is_ok() {
-            eprintln!("{p} {} {}", distance(row, &expected) / norm(&open), p.length());
-        }
         worst_unshadowed = worst_unshadowed.max(distance(row, &open) / norm(&open));
     }
     // The mesh is inscribed (0.003), 16,384 rays and the quadrature are each good for about 0.002.
