@@ -3,9 +3,10 @@
 use crate::group::{Directions, Group};
 use crate::lanes::{Lanes, Path, Portable};
 use crate::level::{Job, dispatch};
+use crate::nearest::{Best, nearest};
 use crate::packet::{Many, Packet, Scratch, WIDEST, Walk, alone};
 use crate::ray::{Hit, LARGEST, Line};
-use crate::sight::Occluders;
+use crate::sight::{Occluders, PER_CELL};
 use crate::tracer::Tracer;
 use crate::tree::{Child, Tree};
 use crate::walk::{Apart, Solid, Walker};
@@ -82,13 +83,60 @@ impl Tracer {
         zs: &[f32],
         wanted: &[u64],
         solid: &dyn Fn(u32, f32, f32) -> bool,
-        _state: &mut FanState,
+        state: &mut FanState,
         hits: &mut [Option<Hit>],
     ) {
+        assert!(xs.len() == ys.len() && xs.len() == zs.len(), "one x, y and z for each direction");
+        assert!(hits.len() == xs.len(), "one hit for each direction");
+        assert!(wanted.len() * 64 >= xs.len(), "one bit for each direction");
+        hits.fill(None);
+        if self.tree.nodes.is_empty() {
+            return;
+        }
         let directions = Directions { origin, each: [xs, ys, zs] };
-        for (i, hit) in hits.iter_mut().enumerate() {
-            let asked = wanted[i / 64] >> (i % 64) & 1 == 1;
-            *hit = if asked { self.closest(&directions.ray(i), solid) } else { None };
+        let scratch = &mut state.scratch;
+        dispatch(self.level, ClosestFan { tree: &self.tree, directions, wanted, solid, scratch, hits });
+    }
+}
+
+/// [`Tracer::closest_fan`] at one level.
+struct ClosestFan<'a> {
+    tree: &'a Tree,
+    directions: Directions<'a>,
+    wanted: &'a [u64],
+    solid: Solid<'a>,
+    scratch: &'a mut Scratch,
+    hits: &'a mut [Option<Hit>],
+}
+
+impl Job for ClosestFan<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<P: Path>(self) {
+        let ClosestFan { tree, directions, wanted, solid, scratch, hits } = self;
+        scratch.start(tree, directions.origin);
+        let Scratch { sights, occluders, stack, .. } = scratch;
+        let asked = (0..hits.len()).filter(|i| wanted[i / 64] >> (i % 64) & 1 == 1);
+        for i in asked {
+            let Some(line) = Line::new(&directions.ray(i)) else {
+                continue;
+            };
+            let walker = Walker::new(tree, line);
+            // What blocked rays that went this way is a good first guess: nothing beyond it is visited.
+            let cell = Occluders::cell(walker.octant, line.direction.to_array());
+            let mut guess = Best::default();
+            for index in 0..PER_CELL {
+                if let Some((block, lane)) = occluders.get(cell, index) {
+                    guess.improve::<P>(tree, block, 1 << lane, &line, solid, sights);
+                }
+            }
+            let best = nearest::<P>(tree, &walker, guess, stack, solid, sights);
+            hits[i] = best.hit;
+            let (block, lane) = best.place;
+            if best.hit.is_some() && tree.blocks[block].masked >> lane & 1 == 0 {
+                occluders.keep(cell, block, lane);
+            }
         }
     }
 }

@@ -20,6 +20,7 @@ mod fan;
 mod group;
 mod lanes;
 mod level;
+mod nearest;
 mod offset;
 mod packet;
 mod ray;

@@ -24,7 +24,7 @@ pub(crate) struct Scratch {
     pub(crate) occluders: Occluders,
     /// Rays (high half) and child (low half) still to visit.
     waiting: Vec<u64>,
-    stack: Vec<u32>,
+    pub(crate) stack: Vec<u32>,
     /// The tree of the last fan.
     serial: u64,
 }

@@ -4,9 +4,10 @@ use crate::block::Seen;
 use crate::build::build;
 use crate::lanes::Path;
 use crate::level::{Job, Level, dispatch};
+use crate::nearest::{Best, nearest};
 use crate::ray::{Hit, Line, Ray};
 use crate::tree::{Child, Tree};
-use crate::walk::{Fresh, Solid, Walker, blocked, nearest};
+use crate::walk::{Fresh, Solid, Walker, blocked};
 use glam::Vec3;
 use std::cell::Cell;
 
@@ -90,7 +91,9 @@ impl Job for Closest<'_> {
 
     #[inline(always)]
     fn run<P: Path>(self) -> Option<Hit> {
-        nearest::<P>(self.tree, &Walker::new(self.tree, self.line), self.stack, self.solid)
+        let mut view = Fresh { origin: self.line.origin, seen: Seen::NOTHING };
+        let walker = Walker::new(self.tree, self.line);
+        nearest::<P>(self.tree, &walker, Best::default(), self.stack, self.solid, &mut view).hit
     }
 }
 

@@ -1,8 +1,8 @@
-//! One ray through the tree.
+//! One ray through the tree, until anything blocks it.
 
 use crate::block::{Seen, candidates, see};
 use crate::lanes::{Lanes, Path};
-use crate::ray::{Hit, Line, meet};
+use crate::ray::{Line, meet};
 use crate::tree::{Block, Child, Node, Tree, WIDTH};
 use glam::Vec3;
 
@@ -81,9 +81,9 @@ impl Walker {
         Walker { line, octant, apart, end: line.t_max / line.scale }
     }
 
-    /// Which children's boxes the ray meets before `end`.
+    /// Which children's boxes the ray meets before `end`, and where it enters them.
     #[inline(always)]
-    pub(crate) fn boxes<E: Lanes>(&self, node: &Node, end: f32) -> u32 {
+    pub(crate) fn boxes<E: Lanes>(&self, node: &Node, end: f32) -> (u32, E) {
         let mut near = E::splat(0.0);
         let mut far = E::splat(end);
         for axis in 0..3 {
@@ -93,7 +93,7 @@ impl Walker {
             near = enter.mul(inverse).max(near);
             far = leave.mul(inverse).min(far);
         }
-        !near.above(far.mul(E::splat(LATER))) & ((1 << WIDTH) - 1)
+        (!near.above(far.mul(E::splat(LATER))) & ((1 << WIDTH) - 1), near)
     }
 }
 
@@ -138,7 +138,7 @@ pub(crate) fn blocked<P: Path>(
             }
         } else {
             let node = &tree.nodes[child.index()];
-            let mask = walker.boxes::<P::Eight>(node, walker.end);
+            let (mask, _) = walker.boxes::<P::Eight>(node, walker.end);
             push::<P>(tree, stack, node, mask, walker.octant);
         }
         if stack.len() == base {
@@ -187,46 +187,4 @@ pub(crate) fn blocked_for_sure(block: &Block, lane: usize, line: &Line, solid: S
         return false;
     };
     block.masked >> lane & 1 == 0 || solid(block.triangles[lane], hit.u, hit.v)
-}
-
-/// The nearest hit of a ray; of equally near ones that of the smallest triangle number.
-#[inline(always)]
-pub(crate) fn nearest<P: Path>(tree: &Tree, walker: &Walker, stack: &mut Vec<u32>, solid: Solid<'_>) -> Option<Hit> {
-    let base = stack.len();
-    let mut best: Option<Hit> = None;
-    let mut child = Child::node(0);
-    let mut end = walker.end;
-    loop {
-        if let Some(index) = child.as_block() {
-            let block = &tree.blocks[index];
-            let seen = see::<P::Four>(block, walker.line.origin);
-            let (mut open, _) = candidates::<P::Four>(&seen, walker.line.direction);
-            while open != 0 {
-                let lane = open.trailing_zeros() as usize;
-                open &= open - 1;
-                if let Some(hit) = nearer(block, lane, &walker.line, best.as_ref(), solid) {
-                    end = hit.t / walker.line.scale;
-                    best = Some(hit);
-                }
-            }
-        } else {
-            let node = &tree.nodes[child.index()];
-            let mask = walker.boxes::<P::Eight>(node, end);
-            push::<P>(tree, stack, node, mask, walker.octant);
-        }
-        if stack.len() == base {
-            return best;
-        }
-        child = Child::from_bits(stack.pop()?);
-    }
-}
-
-/// The hit of one triangle if it beats the best so far.
-#[inline(never)]
-fn nearer(block: &Block, lane: usize, line: &Line, best: Option<&Hit>, solid: Solid<'_>) -> Option<Hit> {
-    let mut hit = meet(line, block.corners(lane))?;
-    hit.triangle = block.triangles[lane];
-    let beats = best.is_none_or(|best| (hit.t, hit.triangle) < (best.t, best.triangle));
-    let counts = beats && (block.masked >> lane & 1 == 0 || solid(hit.triangle, hit.u, hit.v));
-    counts.then_some(hit)
 }

@@ -69,3 +69,28 @@ fn equality_can_fail() {
     let (_, of_less) = both(&less, Vec3::ZERO, &list, &mut state);
     assert_ne!(of_whole, of_less, "ten triangles less show");
 }
+
+#[test]
+fn hits_of_a_fan_equal_those_of_its_rays() {
+    let (positions, triangles) = soup(800, 0.2, 3);
+    let masked: Vec<bool> = (0..800).map(|i| i % 2 == 0).collect();
+    let mut state = FanState::new();
+    for level in Level::available() {
+        let tracer = Tracer::build(&positions, &triangles, &masked).at_level(level).expect("it is available");
+        let mut random = Random::new(6);
+        for case in 0..30 {
+            let origin = random.point();
+            let list = directions(&mut random, 100 + case);
+            let axis = |k: usize| list.iter().map(|d| d[k]).collect::<Vec<f32>>();
+            let wanted: Vec<u64> = (0..list.len().div_ceil(64)).map(|_| random.next()).collect();
+            let mut hits = vec![None; list.len()];
+            let (xs, ys, zs) = (axis(0), axis(1), axis(2));
+            tracer.closest_fan(origin, &xs, &ys, &zs, &wanted, &half_solid, &mut state, &mut hits);
+            for (i, hit) in hits.iter().enumerate() {
+                let asked = wanted[i / 64] >> (i % 64) & 1 == 1;
+                let single = tracer.closest(&Ray::new(origin, Vec3::from_array(list[i])), &half_solid);
+                assert_eq!(*hit, single.filter(|_| asked), "{level:?}, case {case}, direction {i}");
+            }
+        }
+    }
+}
