@@ -8,12 +8,14 @@ use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
 use crate::plan::{Facts, decide, simulates, tolerance};
 use crate::progress::{Progress, Stage};
 use crate::receivers::{NONE, Receivers};
+use crate::refine::refine;
 use crate::repair::{Finding, Repair};
 use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Settings};
 use scene::Scene;
 use sh_math::Bands;
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 /// Called while a bake runs; returning `Break` cancels it.
@@ -28,7 +30,8 @@ const TYPICAL_HITS: u64 = 256;
 /// As [`bake`], before any ray is traced.
 pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
     settings::check(settings)?;
-    let receivers = receivers_of(scene)?;
+    let scene = &*refined(scene, settings)?;
+    let receivers = Receivers::of(scene);
     let world = World::new(scene, true)?;
     Ok(decide(&Facts::gather(scene, &world, &receivers), settings))
 }
@@ -43,7 +46,8 @@ pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
 /// `progress` asked to stop.
 pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<Prt, Error> {
     settings::check(settings)?;
-    let receivers = receivers_of(scene)?;
+    let scene = &*refined(scene, settings)?;
+    let receivers = Receivers::of(scene);
     let masks = crate::plan::allows_masks(settings);
     let world = World::new(scene, masks)?;
     let plan = decide(&Facts::gather(scene, &world, &receivers), settings);
@@ -61,11 +65,12 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
     Ok(baked)
 }
 
-fn receivers_of(scene: &Scene) -> Result<Receivers, Error> {
+/// The scene as it is baked; an empty one is refused.
+fn refined<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene>, Error> {
     if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
         return Err(Error::EmptyScene { scene: scene.name.clone() });
     }
-    Ok(Receivers::of(scene))
+    refine(scene, settings)
 }
 
 /// A bake under way.

@@ -199,10 +199,10 @@ impl Gatherer<'_> {
         worker.wanted.clear();
         worker.wanted.resize(worker.blocked.len(), 0);
         let chosen = blocked.min(wanted);
-        for (seen, j) in (0..end).filter(|&j| is_set(&worker.blocked, j)).enumerate() {
+        let all_blocked = (0..end).filter(|&j| is_set(&worker.blocked, j));
+        for (before, j) in all_blocked.enumerate() {
             // The k-th of the chosen is the first that reaches k / chosen of all blocked.
-            let (before, after) = (seen * chosen / blocked, (seen + 1) * chosen / blocked);
-            if after > before {
+            if (before + 1) * chosen / blocked > before * chosen / blocked {
                 worker.wanted[j / 64] |= 1 << (j % 64);
             }
         }

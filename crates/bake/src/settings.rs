@@ -1,7 +1,7 @@
 //! Presets and limits of the bake settings.
 
 use crate::Error;
-use coeff_io::{Bounces, Effects, Quality, Sampler, Settings};
+use coeff_io::{Bounces, Effects, Quality, Refine, Sampler, Settings};
 
 /// Most bands that a bake may ask for: 1,024 coefficients per receiver and channel.
 pub const MAX_BANDS: u32 = 32;
@@ -17,6 +17,7 @@ pub fn standard() -> Settings {
         bands: 5,
         quality: Quality::Error(0.01),
         bounces: Bounces::Auto,
+        refine: Refine::Auto,
         effects: Effects::Auto,
         sampler: Sampler::OwenSobol,
         seed: 0,
@@ -51,6 +52,11 @@ pub fn check(settings: &Settings) -> Result<(), Error> {
             return refuse("--sampler", format!("{:?}", settings.sampler), allowed);
         }
         Quality::Rays(_) | Quality::Error(_) => {}
+    }
+    if let Refine::Edge(length) = settings.refine
+        && !(length > 0.0 && length.is_finite())
+    {
+        return refuse("--refine", length.to_string(), "give a length above 0 in metres, auto or off");
     }
     match settings.bounces {
         Bounces::Fixed(n) if n > MAX_BOUNCES => refuse("--bounces", n.to_string(), "use 0 to 1000, or auto"),

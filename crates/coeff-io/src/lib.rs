@@ -21,6 +21,6 @@ pub use error::Error;
 pub use header::{Header, TextureHeader};
 pub use inspect::{Inspection, check, inspect};
 pub use model::{AlphaMode, Camera, Geometry, Material, Mesh, Prt, Texture, TextureSlot, Transfer, Wrap};
-pub use record::{Achieved, Bounces, Effect, Effects, Plan, PlanRow, Quality, RepairCounts, Sampler, Settings};
+pub use record::{Achieved, Bounces, Effect, Effects, Plan, PlanRow, Quality, Refine, RepairCounts, Sampler, Settings};
 pub use replace::replace;
 pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};

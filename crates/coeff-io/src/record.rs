@@ -11,6 +11,8 @@ pub struct Settings {
     pub quality: Quality,
     /// How often light may bounce.
     pub bounces: Bounces,
+    /// Whether large triangles are split before the bake.
+    pub refine: Refine,
     /// Which effects may be simulated.
     pub effects: Effects,
     /// Which sequence the rays follow.
@@ -37,6 +39,17 @@ pub enum Bounces {
     Auto,
     /// Exactly so often.
     Fixed(u32),
+}
+
+/// Whether large triangles are split, so that their vertices can hold shadows.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Refine {
+    /// The mesh stays as it is: one receiver per vertex of the file.
+    Off,
+    /// As evenly as the scene's own triangles allow.
+    Auto,
+    /// Until no edge is longer than this, metres.
+    Edge(f32),
 }
 
 /// Which effects may be simulated.

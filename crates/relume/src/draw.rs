@@ -25,6 +25,25 @@ pub(crate) struct Drawer<'a> {
     environment: &'a Environment,
     backend: Backend,
     renderer: Renderer<'a>,
+    window: Window,
+}
+
+/// What is done against ringing: a strong small light, cut off at few bands, is negative in places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Window {
+    /// Nothing: the light as its coefficients have it.
+    None,
+    /// The mildest window under which the light is nowhere negative.
+    Auto,
+}
+
+impl Window {
+    fn apply(self, light: &sh_math::Rgb) -> sh_math::Rgb {
+        match self {
+            Self::None => light.clone(),
+            Self::Auto => light.windowed(&sh_math::window::automatic(light)),
+        }
+    }
 }
 
 enum Renderer<'a> {
@@ -38,6 +57,7 @@ impl<'a> Drawer<'a> {
         backend: Backend,
         prt: &'a Prt,
         environment: &'a Environment,
+        window: Window,
         console: &Console,
     ) -> Result<Self> {
         let renderer = match backend {
@@ -48,7 +68,16 @@ impl<'a> Drawer<'a> {
                 Err(error) => stand_in(prt, environment, &error, console)?,
             },
         };
-        Ok(Self { prt, environment, backend, renderer })
+        let mut drawer = Self { prt, environment, backend, renderer, window };
+        drawer.apply_window();
+        Ok(drawer)
+    }
+
+    fn apply_window(&mut self) {
+        match &mut self.renderer {
+            Renderer::Gpu(renderer) => renderer.set_light(self.window.apply(renderer.light())),
+            Renderer::Cpu(renderer) => renderer.set_light(self.window.apply(renderer.light())),
+        }
     }
 
     /// Draws one picture.
@@ -61,6 +90,7 @@ impl<'a> Drawer<'a> {
             Ok(render_wgpu::Image { width, height, linear, display }) => Ok(Image { width, height, linear, display }),
             Err(error) if self.backend == Backend::Auto => {
                 self.renderer = stand_in(self.prt, self.environment, &error.into(), console)?;
+                self.apply_window();
                 self.draw(frame, console)
             }
             Err(error) => Err(error.into()),

@@ -1,7 +1,7 @@
 //! `relume render`: a baked file under a light probe becomes a picture.
 
 use crate::console::Console;
-use crate::draw::{Backend, Drawer};
+use crate::draw::{Backend, Drawer, Window};
 use crate::lens::{self, Lens};
 use crate::output;
 use crate::picture::{self, DisplayOptions, Size, Target};
@@ -52,6 +52,9 @@ pub(crate) struct Options {
     /// Samples along each side of a pixel, 1 to 8.
     #[arg(long, value_name = "N", default_value_t = 2)]
     supersample: u32,
+    /// What is done against ringing under a strong small light; see docs/shading.md.
+    #[arg(long, value_enum, default_value_t = Window::None)]
+    window: Window,
     /// What is drawn behind the scene.
     #[arg(long, value_enum, default_value_t = Background::Sky)]
     background: Background,
@@ -84,7 +87,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     };
     frame.check().map_err(|error| crate::usage::Usage(error.to_string()))?;
     let environment = options.probe.load(console)?;
-    let mut drawer = Drawer::open(options.backend, &prt, &environment, console)?;
+    let mut drawer = Drawer::open(options.backend, &prt, &environment, options.window, console)?;
     match options.frames {
         Some(count) => draw_turn(options, &frame, count.get(), &mut drawer, console),
         None => draw_one(options, &frame, &mut drawer, console),

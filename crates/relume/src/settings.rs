@@ -3,7 +3,7 @@
 use crate::usage::Usage;
 use anyhow::Result;
 use bake::settings;
-use coeff_io::{Bounces, Effect, Effects, Quality, Sampler, Settings};
+use coeff_io::{Bounces, Effect, Effects, Quality, Refine, Sampler, Settings};
 
 /// How to bake, as typed.
 #[derive(Debug, clap::Args)]
@@ -20,6 +20,10 @@ pub(crate) struct BakeOptions {
     /// How often light may bounce: a number, or auto for until it changes nothing.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = bounces)]
     bounces: Bounces,
+    /// Splits large triangles, whose vertices alone could not hold shadows: auto (as evenly as the scene's own triangles
+    /// allow), off, or the longest edge in metres.
+    #[arg(long, value_name = "auto|off|METRES", default_value = "auto", value_parser = refine)]
+    refine: Refine,
     /// Effects that may be simulated: auto for those that the scene calls for, all, none, or a list of visibility,
     /// interreflection, color, masks, specular, normal-maps, emission, transmission.
     #[arg(long, value_name = "auto|all|none|LIST", default_value = "auto", value_parser = effects)]
@@ -72,6 +76,7 @@ impl BakeOptions {
             bands: self.bands,
             quality: self.rays.map(Quality::Rays).or(self.error.map(Quality::Error)).unwrap_or(standard.quality),
             bounces: self.bounces,
+            refine: self.refine,
             effects: self.effects.clone(),
             sampler: match self.sampler {
                 SamplerName::OwenSobol => Sampler::OwenSobol,
@@ -91,6 +96,14 @@ pub(crate) fn bounces(text: &str) -> Result<Bounces, String> {
     match text {
         "auto" => Ok(Bounces::Auto),
         number => number.parse().map(Bounces::Fixed).map_err(|_| "give a number or auto".into()),
+    }
+}
+
+fn refine(text: &str) -> Result<Refine, String> {
+    match text {
+        "auto" => Ok(Refine::Auto),
+        "off" => Ok(Refine::Off),
+        length => length.parse().map(Refine::Edge).map_err(|_| "give auto, off or a length in metres".into()),
     }
 }
 

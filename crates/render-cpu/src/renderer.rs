@@ -72,6 +72,17 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// Coefficients of the light as it lies, not turned.
+    #[must_use]
+    pub fn light(&self) -> &sh_math::Rgb {
+        &self.light
+    }
+
+    /// Lights the vertices by other coefficients, such as windowed ones; sky and reflections stay.
+    pub fn set_light(&mut self, light: sh_math::Rgb) {
+        self.light = light;
+    }
+
     /// Draws one frame as docs/shading.md says.
     ///
     /// # Errors

@@ -123,6 +123,18 @@ impl Renderer {
         })
     }
 
+    /// Coefficients of the light as it lies, not turned.
+    #[must_use]
+    pub fn light(&self) -> &Rgb {
+        &self.light
+    }
+
+    /// Lights the vertices by other coefficients, such as windowed ones; sky and reflections stay.
+    pub fn set_light(&mut self, light: Rgb) {
+        self.light = light;
+        self.lit_for = None;
+    }
+
     /// Number of surface pipelines, one for each kind of material in use.
     #[must_use]
     pub fn pipelines(&self) -> usize {

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use bake::settings;
-use coeff_io::{Bounces, Prt, Quality, Sampler, Settings};
+use coeff_io::{Bounces, Prt, Quality, Refine, Sampler, Settings};
 use glam::Vec4;
 use scene::Scene;
 use std::ops::ControlFlow;
@@ -22,7 +22,14 @@ pub(crate) fn grey(name: &str, a: f32) -> Scene {
 
 /// A fixed number of rays and bounces.
 pub(crate) fn fixed(bands: u32, sampler: Sampler, rays: u32, bounces: u32) -> Settings {
-    Settings { bands, sampler, quality: Quality::Rays(rays), bounces: Bounces::Fixed(bounces), ..settings::standard() }
+    Settings {
+        bands,
+        sampler,
+        quality: Quality::Rays(rays),
+        bounces: Bounces::Fixed(bounces),
+        refine: Refine::Off,
+        ..settings::standard()
+    }
 }
 
 /// Bakes without showing progress.

@@ -36,6 +36,7 @@ fn settings() -> Settings {
         effects: Effects::Only(vec![Effect::Visibility, Effect::Interreflection, Effect::Color]),
         sampler: Sampler::OwenSobol,
         seed: 7,
+        refine: Refine::Auto,
         memory: 1 << 30,
     }
 }

@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 use coeff_io::{
-    Achieved, AlphaMode, Bounces, Camera, Effects, Geometry, Material, Mesh, Plan, Prt, Quality, Sampler, Settings,
-    Transfer,
+    Achieved, AlphaMode, Bounces, Camera, Effects, Geometry, Material, Mesh, Plan, Prt, Quality, Refine, Sampler,
+    Settings, Transfer,
 };
 use glam::Vec3;
 
@@ -55,6 +55,7 @@ pub(crate) fn empty() -> Prt {
             effects: Effects::Auto,
             sampler: Sampler::OwenSobol,
             seed: 0,
+            refine: Refine::Off,
             memory: 1 << 20,
         },
         plan: Plan::default(),

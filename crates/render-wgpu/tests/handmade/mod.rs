@@ -3,8 +3,8 @@
 //! Its transfer is the unshadowed closed form, tinted and darkened by formula, so that nothing has to be traced.
 
 use coeff_io::{
-    Achieved, AlphaMode, Bounces, Camera, Effects, Material, Mesh, Plan, Prt, Quality, Sampler, Settings, Texture,
-    TextureSlot, Transfer, Wrap,
+    Achieved, AlphaMode, Bounces, Camera, Effects, Material, Mesh, Plan, Prt, Quality, Refine, Sampler, Settings,
+    Texture, TextureSlot, Transfer, Wrap,
 };
 use glam::{Quat, Vec3};
 use probe_io::{Environment, Lamp};
@@ -70,6 +70,7 @@ fn empty(channels: u32) -> Prt {
             effects: Effects::Auto,
             sampler: Sampler::OwenSobol,
             seed: 0,
+            refine: Refine::Off,
             memory: 1 << 20,
         },
         plan: Plan::default(),
