@@ -8,7 +8,7 @@ use shapes::{Random, hemisphere, soup};
 
 /// Half of the triangles are masked, and solid in half of their area.
 fn half_solid(triangle: u32, u: f32, v: f32) -> bool {
-    (triangle % 3 == 0) ^ (u > v)
+    triangle.is_multiple_of(3) ^ (u > v)
 }
 
 /// Bits of a fan, and the same from single rays.
