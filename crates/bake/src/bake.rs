@@ -3,7 +3,7 @@
 use crate::bundle::{Baked, bundle};
 use crate::directions::DirectionBank;
 use crate::field::Field;
-use crate::gather::{Gathered, Gatherer};
+use crate::gather::{Gathered, Gatherer, PackedHit};
 use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
 use crate::plan::{Facts, decide, simulates, tolerance};
 use crate::progress::{Progress, Stage};
@@ -149,15 +149,20 @@ impl<'a> Run<'a> {
         let (last, findings, errors) = (&mut self.last, &mut self.findings, &mut self.errors);
         let achieved = &mut self.achieved;
         let (receivers, corners) = (&self.receivers, &self.gatherer.world.corners);
+        let worth = tolerance(self.settings.quality);
         let mut wanted_backs = std::collections::BTreeSet::new();
         let mut sink = |id: u32, seen: &Gathered| {
             last.set_all(id, &seen.transfer);
-            findings[id as usize] = Finding { openness: seen.openness, inside_share: seen.inside_share };
+            let finding = Finding { openness: seen.openness, inside_share: seen.inside_share };
+            findings[id as usize] = finding;
             errors[id as usize] = seen.error;
             achieved.visibility_rays += seen.visibility_rays;
             achieved.bounce_rays += seen.bounce_rays;
-            for hit in seen.hits.iter().filter(|h| h.triangle & crate::gather::BACK != 0) {
-                let corners = corners[(hit.triangle & !crate::gather::BACK) as usize];
+            if finding.is_inside() || back_share(&seen.hits) <= worth {
+                return;
+            }
+            for hit in seen.hits.iter().filter(|hit| hit.is_back()) {
+                let corners = corners[hit.triangle() as usize];
                 wanted_backs.extend(corners.into_iter().filter(|&v| receivers.back_of[v as usize] == NONE));
             }
         };
@@ -173,6 +178,7 @@ impl<'a> Run<'a> {
     }
 
     /// Light reaches the backs of some surfaces: they become receivers for the time of the bake, until none is new.
+    /// Where backs send a receiver less than the tolerance, the fronts stand in for them.
     fn add_backs(&mut self, keep: bool) -> Result<Vec<Chunk>, Error> {
         let mut chunks = Vec::new();
         let mut done = self.receivers.permanent as u32;
@@ -229,6 +235,12 @@ impl<'a> Run<'a> {
             self.achieved.worst_receiver = id;
         }
     }
+}
+
+/// Share of a receiver's light that the backs it sees send on at most.
+fn back_share(hits: &[PackedHit]) -> f32 {
+    let backs = hits.iter().filter(|hit| hit.is_back());
+    backs.map(|hit| hit.reflected.into_iter().fold(0.0, f32::max)).sum()
 }
 
 /// Sum of the changes to come, if each is to the last as the last was to the one before.

@@ -45,15 +45,25 @@ pub(crate) struct Gathered {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PackedHit {
     /// Traced triangle; bit 31 where its back was hit.
-    pub(crate) triangle: u32,
+    triangle_and_side: u32,
     /// Barycentrics of the second and third corner, in units of 1/65535.
     pub(crate) barycentrics: [u16; 2],
     /// Weight times albedo, RGB.
     pub(crate) reflected: [f32; 3],
 }
 
-/// Bit of [`PackedHit::triangle`] for the back.
-pub(crate) const BACK: u32 = 1 << 31;
+impl PackedHit {
+    pub(crate) fn is_back(&self) -> bool {
+        self.triangle_and_side & BACK != 0
+    }
+
+    pub(crate) fn triangle(&self) -> u32 {
+        self.triangle_and_side & !BACK
+    }
+}
+
+/// Bit of [`PackedHit::triangle_and_side`] for the back.
+const BACK: u32 = 1 << 31;
 
 /// Buffers that a thread keeps between receivers. Contents never change results.
 pub(crate) struct Worker {
@@ -232,7 +242,7 @@ impl Gatherer<'_> {
     fn packed(&self, hit: &Hit, weight: f32) -> PackedHit {
         let albedo = self.world.albedo(hit.triangle, hit.u, hit.v);
         PackedHit {
-            triangle: hit.triangle | if hit.front { 0 } else { BACK },
+            triangle_and_side: hit.triangle | if hit.front { 0 } else { BACK },
             barycentrics: [quantised(hit.u), quantised(hit.v)],
             reflected: (albedo * weight).to_array(),
         }

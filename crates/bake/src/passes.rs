@@ -1,9 +1,9 @@
 //! Runs receivers over the threads: the first pass, and one pass per bounce.
 
 use crate::field::Field;
-use crate::gather::{BACK, Gathered, Gatherer, PackedHit, Worker};
+use crate::gather::{Gathered, Gatherer, PackedHit, Worker};
 use crate::progress::{Progress, Stage};
-use crate::receivers::{Receivers, morton_order};
+use crate::receivers::{NONE, Receivers, morton_order};
 use crate::{Error, ProgressFn};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -182,10 +182,11 @@ pub(crate) fn bounce_pass(
 fn add_reflected(gatherer: &Gatherer<'_>, receivers: &Receivers, hits: &[PackedHit], last: &Field, row: &mut [f32]) {
     let stride = row.len() / last.channels;
     for hit in hits {
-        let corners = gatherer.world.corners[(hit.triangle & !BACK) as usize];
+        let corners = gatherer.world.corners[hit.triangle() as usize];
         let [u, v] = hit.barycentrics.map(|b| f32::from(b) / 65535.0);
         for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
-            let id = if hit.triangle & BACK == 0 { corner } else { receivers.back_of[corner as usize] };
+            let back = if hit.is_back() { receivers.back_of[corner as usize] } else { NONE };
+            let id = if back == NONE { corner } else { back };
             let from = last.row(id);
             for (c, (out, from)) in row.chunks_exact_mut(stride).zip(from.chunks_exact(stride)).enumerate() {
                 let factor = share * hit.reflected[c];

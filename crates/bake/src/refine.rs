@@ -46,15 +46,15 @@ pub fn refine<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene
     Ok(Cow::Owned(refined))
 }
 
-/// Longest edge of triangles spread evenly over all surfaces: half a square of that diagonal has the mean area, and
-/// half as much again leaves alone what is about even.
+/// Longest edge of triangles spread evenly over all surfaces: half a square of that diagonal has the mean area; twice
+/// the length leaves alone what is about even.
 fn even_edge(scene: &Scene) -> f32 {
     let (mut area, mut count) = (0.0, 0.0);
     for mesh in &scene.meshes {
         area += (0..mesh.triangles.len()).map(|t| mesh.area(t)).sum::<f64>();
         count += mesh.triangles.len() as f64;
     }
-    (1.5 * (4.0 * area / f64::max(count, LEAST_TRIANGLES)).sqrt()) as f32
+    (2.0 * (4.0 * area / f64::max(count, LEAST_TRIANGLES)).sqrt()) as f32
 }
 
 fn has_longer(mesh: &Mesh, longest: f32) -> bool {

@@ -22,6 +22,13 @@ pub(crate) struct Finding {
     pub(crate) inside_share: f32,
 }
 
+impl Finding {
+    /// Whether the receiver stands inside a body.
+    pub(crate) fn is_inside(self) -> bool {
+        self.openness < 0.5 && self.inside_share > INSIDE
+    }
+}
+
 impl Repair {
     /// Finds broken receivers among those that go into the file, and sound neighbours for them.
     pub(crate) fn plan(scene: &Scene, receivers: &Receivers, findings: &[Finding]) -> Self {
@@ -29,7 +36,7 @@ impl Repair {
         let mut broken = vec![false; receivers.permanent];
         for (id, flag) in broken.iter_mut().enumerate() {
             let finding = findings[id];
-            let inside = finding.openness < 0.5 && finding.inside_share > INSIDE;
+            let inside = finding.is_inside();
             let unsound = !receivers.list[id].sound;
             repair.counts.bad_normals += u32::from(unsound);
             repair.counts.inside += u32::from(inside && !unsound);
