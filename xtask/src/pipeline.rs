@@ -29,16 +29,19 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let relume = relume();
     let stem = stem(&options.scene);
     let path = |suffix: &str| options.out.join(format!("{stem}{suffix}")).display().to_string();
-    let (prt, size) = (path(".prt"), options.size.as_str());
+    let prt = path(".prt");
     command::run(&relume, &["bake", &options.scene, "-o", &prt])?;
     command::run(&relume, &["inspect", &prt])?;
-    command::run(&relume, &["render", &prt, "--probe", &options.probe, "-o", &path(".png"), "--size", size])?;
+    let look = ["--size", &options.size, "--window", "auto", "--tonemap", "filmic", "--exposure", "0.5"];
+    let draw = |output: &str, more: &[&str]| {
+        let mut arguments = vec!["render", &prt, "--probe", &options.probe, "-o", output];
+        arguments.extend(look.iter().chain(more));
+        command::run(&relume, &arguments)
+    };
+    draw(&path(".png"), &[])?;
     // The same file under a turned light: nothing is baked again.
-    command::run(
-        &relume,
-        &["render", &prt, "--probe", &options.probe, "-o", &path("-turned.png"), "--size", size, "--rotate", "120,0,0"],
-    )?;
-    command::run(&relume, &["render", &prt, "--probe", &options.probe, "-o", &path(".exr"), "--size", size])?;
+    draw(&path("-turned.png"), &["--rotate", "120,0,0"])?;
+    draw(&path(".exr"), &[])?;
     Ok(())
 }
 
