@@ -64,7 +64,15 @@ impl Receivers {
         if self.back_of[vertex as usize] == NONE {
             self.back_of[vertex as usize] = self.list.len() as u32;
             let front = self.list[vertex as usize];
-            self.list.push(Receiver { normal: -front.normal, geometric_normal: -front.geometric_normal, ..front });
+            // Over a fold a front is drawn in to above the surface, which is below it on the back.
+            let way = front.position - front.vertex;
+            let above = way.dot(front.geometric_normal).max(0.0);
+            self.list.push(Receiver {
+                position: front.position - above * front.geometric_normal,
+                normal: -front.normal,
+                geometric_normal: -front.geometric_normal,
+                ..front
+            });
         }
         self.back_of[vertex as usize]
     }
@@ -175,4 +183,49 @@ fn spread(x: u64) -> u64 {
         x = (x | x << shift) & mask;
     }
     x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quad folded along the diagonal from corner 0 to corner 2; its middle is off the plane of those corners'
+    /// neighbours, above it for a positive `fold`.
+    fn folded(fold: f32) -> Scene {
+        let lift =
+            |y| [Vec3::new(0.0, y, 0.0), Vec3::new(0.0, 0.0, 1.0), Vec3::new(1.0, y, 1.0), Vec3::new(1.0, 0.0, 0.0)];
+        let mesh = Mesh {
+            positions: lift(fold).to_vec(),
+            normals: vec![Vec3::Y; 4],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        let material = scene::Material { double_sided: true, ..scene::Material::default() };
+        Scene { meshes: vec![mesh], materials: vec![material], ..Scene::default() }
+    }
+
+    /// Height of a point above the folded quad, which is linear on either side of the diagonal.
+    fn height(p: Vec3, fold: f32) -> f32 {
+        p.y - fold * (1.0 - (p.x - p.z).abs())
+    }
+
+    fn worst_side(side: impl Fn(&Receiver) -> f32) -> f32 {
+        let sink = |fold: f32| {
+            let all = Receivers::of(&folded(fold));
+            all.list.iter().map(|r| side(r) * height(r.position, fold)).fold(f32::INFINITY, f32::min)
+        };
+        sink(0.3).min(sink(-0.3))
+    }
+
+    #[test]
+    fn receivers_stand_on_their_own_side_of_a_fold() {
+        let worst = worst_side(|r| r.geometric_normal.y.signum());
+        assert!(worst >= -1e-6, "a receiver is {worst} below the surface that it stands on");
+    }
+
+    #[test]
+    fn receivers_stand_on_their_own_side_of_a_fold_can_fail() {
+        let worst = worst_side(|_| 1.0);
+        assert!(worst < -1e-6, "backs stand above the front: {worst}");
+    }
 }

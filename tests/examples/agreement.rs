@@ -1,0 +1,65 @@
+//! Prints how far a bake is from the path tracer: `agreement -- SCENE PROBE [RECEIVERS] [RAYS]`.
+//!
+//! One line for direct light, one for a single bounce, one for all bounces; the figures of `docs/comparison.md`.
+
+#![expect(clippy::print_stdout, reason = "an example that prints a table")]
+
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use coeff_io::{Bounces, Quality};
+use probe_io::{Environment, LoadOptions};
+use sh_math::Bands;
+use std::path::Path;
+use std::time::Instant;
+use support::{BandLight, Subject, measure};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [scene_name, probe_name, ..] = &arguments[..] else {
+        return Err("give a scene and a probe: agreement -- SCENE PROBE [RECEIVERS] [RAYS]".into());
+    };
+    let count = arguments.get(2).map_or(Ok(100), |n| n.parse())?;
+    let quality = match arguments.get(3) {
+        Some(rays) => Quality::Rays(rays.parse()?),
+        None => bake::settings::standard().quality,
+    };
+    let scene = match scene_name.strip_prefix("builtin:") {
+        Some(name) => scene::builtin(name).ok_or("no such scene")?,
+        None => scene::load(Path::new(scene_name))?,
+    };
+    let environment = match probe_name.strip_prefix("builtin:") {
+        Some(name) => probe_io::builtin(name).ok_or("no such probe")?,
+        None => Environment::load(Path::new(probe_name), &LoadOptions::lenient())?.0,
+    };
+    let bands = Bands::new(bake::settings::standard().bands).ok_or("no such number of bands")?;
+    let light = BandLight::of(&environment, bands);
+    println!("{scene_name} under {probe_name}: {} vertices", scene.vertex_count());
+    println!(
+        "| bounces | receivers | paths | difference | bias | noise | median | 95 % | left out | bake s | paths s |"
+    );
+    for (bounces, limit) in [(Bounces::Fixed(0), Some(0)), (Bounces::Fixed(1), Some(1)), (Bounces::Auto, None)] {
+        let start = Instant::now();
+        let subject = Subject::bake(scene.clone(), bounces, quality, count);
+        let baked = start.elapsed().as_secs_f64();
+        let (f, mut rows) = measure(&subject, &light, limit, 0.0048);
+        println!(
+            "| {} | {} | {} | {:.2} % | {:+.2} % | {:.2} % | {:.2} % | {:.2} % | {} | {baked:.0} | {:.0} |",
+            subject.prt.achieved.bounces,
+            f.receivers,
+            f.paths,
+            100.0 * f.difference,
+            100.0 * f.bias,
+            100.0 * f.noise,
+            100.0 * f.relative[0],
+            100.0 * f.relative[1],
+            subject.left_out,
+            start.elapsed().as_secs_f64() - baked,
+        );
+        rows.sort_by(|a, b| b.difference().total_cmp(&a.difference()));
+        for row in rows.iter().take(arguments.get(4).map_or(Ok(0), |n| n.parse())?) {
+            println!("    {row:?} at {:?}", subject.prt.geometry.positions[row.row]);
+        }
+    }
+    Ok(())
+}

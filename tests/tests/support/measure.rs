@@ -1,0 +1,96 @@
+//! The figures of a comparison.
+
+use super::{BandLight, Subject};
+use reference::{Estimate, Settings, World, radiance_at};
+
+/// Paths of the first look, which tells how many are needed.
+const FIRST_LOOK: u32 = 256;
+/// Most paths per receiver.
+const MOST: u32 = 1 << 20;
+
+/// How far a bake is from the path tracer. Shares of the mean radiance, which is the mean of the absolute radiance
+/// over all compared receivers and channels.
+#[derive(Debug, Clone, Copy)]
+pub struct Figures {
+    /// Receivers compared.
+    pub receivers: usize,
+    /// Paths per receiver.
+    pub paths: u32,
+    /// Mean of |bake - reference| over receivers and channels, as a share of the mean radiance.
+    pub difference: f64,
+    /// Mean of bake - reference, as a share of the mean radiance: what does not average out.
+    pub bias: f64,
+    /// Mean standard error of the reference, as a share of the mean radiance.
+    pub noise: f64,
+    /// Median and 95th percentile over receivers brighter than a tenth of the mean of |bake - reference|, summed over
+    /// channels, as a share of the receiver's own radiance.
+    pub relative: [f64; 2],
+    /// Mean radiance.
+    pub radiance: f64,
+}
+
+/// Compares the rows of a subject under a light, with as many paths as bring the noise of the reference to `noise`.
+pub fn measure(subject: &Subject, light: &BandLight, max_bounces: Option<u32>, noise: f64) -> (Figures, Vec<Row>) {
+    let world = World::new(&subject.scene);
+    let points = subject.points();
+    let trace = |samples, seed| radiance_at(&world, &light.picture, &points, &Settings { samples, seed, max_bounces });
+    let look = figures(&rows(subject, light, &trace(FIRST_LOOK, 1)), FIRST_LOOK);
+    let needed = f64::from(FIRST_LOOK) * (look.noise / noise).powi(2);
+    let paths = (needed.ceil() as u32).clamp(FIRST_LOOK, MOST);
+    let rows = rows(subject, light, &trace(paths, 2));
+    (figures(&rows, paths), rows)
+}
+
+/// What both sides say of a receiver.
+#[derive(Debug, Clone, Copy)]
+pub struct Row {
+    /// Row of the transfer.
+    pub row: usize,
+    /// Radiance by the bake.
+    pub baked: [f64; 3],
+    /// Radiance by the path tracer.
+    pub traced: Estimate,
+}
+
+impl Row {
+    fn traced(&self) -> [f64; 3] {
+        self.traced.mean.map(f64::from)
+    }
+
+    /// Sum over the channels of |bake - reference|.
+    pub fn difference(&self) -> f64 {
+        self.baked.iter().zip(self.traced()).map(|(a, b)| (a - b).abs()).sum()
+    }
+
+    /// Sum over the channels of the reference's absolute radiance.
+    pub fn size(&self) -> f64 {
+        self.traced().iter().map(|v| v.abs()).sum()
+    }
+}
+
+fn rows(subject: &Subject, light: &BandLight, traced: &[Estimate]) -> Vec<Row> {
+    let row =
+        |(&row, &traced): (&usize, &Estimate)| Row { row, baked: subject.radiance(row, &light.coefficients), traced };
+    subject.rows.iter().zip(traced).map(row).collect()
+}
+
+fn figures(rows: &[Row], paths: u32) -> Figures {
+    let sum = |value: &dyn Fn(&Row) -> f64| rows.iter().map(value).sum::<f64>();
+    let total = sum(&Row::size);
+    let signed = sum(&|r| r.baked.iter().zip(r.traced()).map(|(a, b)| a - b).sum());
+    let spread = sum(&|r| r.traced.std_error.iter().map(|&e| f64::from(e)).sum());
+    let mean = total / rows.len() as f64;
+    let mut relative: Vec<f64> =
+        rows.iter().filter(|r| r.size() > 0.1 * mean).map(|r| r.difference() / r.size()).collect();
+    relative.sort_by(f64::total_cmp);
+    let at = |share: f64| relative.get((relative.len() as f64 * share) as usize).copied().unwrap_or(f64::NAN);
+    Figures {
+        receivers: rows.len(),
+        paths,
+        difference: sum(&Row::difference) / total,
+        bias: signed / total,
+        noise: spread / total,
+        relative: [at(0.5), at(0.95)],
+        radiance: mean / 3.0,
+    }
+}
