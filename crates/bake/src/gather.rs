@@ -114,7 +114,7 @@ impl Gatherer<'_> {
         out
     }
 
-    /// Closed form of [G] eq. (22): nothing can stand in the way.
+    /// Closed form of \[G\] eq. (22): nothing can stand in the way.
     fn unshadowed(&self, receiver: &Receiver) -> Gathered {
         let mut transfer = vec![0.0; self.bands.coefficients()];
         zonal::cosine_transfer(self.bands, receiver.normal, &mut transfer);
@@ -184,7 +184,7 @@ impl Gatherer<'_> {
         worker.open.extend(range.map(|j| if is_set(&worker.blocked, j) { 0.0 } else { 1.0 }));
     }
 
-    /// Finds the nearest surface along blocked directions: [G] eq. (11) gathers over these only.
+    /// Finds the nearest surface along blocked directions: \[G\] eq. (11) gathers over these only.
     fn trace_blockers(&self, origin: Vec3, set: &DirectionSet, step: usize, worker: &mut Worker, out: &mut Gathered) {
         let end = set.steps[step].end;
         out.bounce_rays = self.choose(end, worker);

@@ -2,7 +2,7 @@
 //!
 //! [`plan`] decides from the scene which effects are simulated; [`bake`] obeys it and returns a [`coeff_io::Prt`]
 //! that holds, per vertex, a transfer vector: its dot product with the coefficients of a light, times the albedo,
-//! is the radiance that the vertex sends out. [G] eq. (8) to (11), with the printed errors corrected.
+//! is the radiance that the vertex sends out. \[G\] eq. (8) to (11), with the printed errors corrected.
 //!
 //! Light is carried between diffuse, two-sided surfaces. What blends or transmits lets light pass, emission is
 //! drawn but not transported, and a mask's empty parts do not exist for rays.

@@ -132,7 +132,7 @@ impl SeenSurfaces {
     }
 }
 
-/// One bounce, [G] eq. (11): every receiver sums what the surfaces that it sees send on of the bounce before.
+/// One bounce, \[G\] eq. (11): every receiver sums what the surfaces that it sees send on of the bounce before.
 pub(crate) fn bounce_pass(
     gatherer: &Gatherer<'_>,
     receivers: &Receivers,
