@@ -1,0 +1,112 @@
+//! Splitting keeps the surface: same area, no gaps, no edge too long, attributes for every vertex.
+
+use bake::{refine, settings};
+use coeff_io::{Refine, Settings};
+use glam::Vec3;
+use scene::{Mesh, Scene};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+fn with(refine: Refine) -> Settings {
+    Settings { refine, ..settings::standard() }
+}
+
+fn area(scene: &Scene) -> f64 {
+    scene.meshes.iter().flat_map(|m| (0..m.triangles.len()).map(|t| m.area(t))).sum()
+}
+
+/// Edges by the bits of their ends' positions, with the times that each is walked one way less those the other way.
+fn open_edges(scene: &Scene) -> usize {
+    let mut walked: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
+    let key = |m: &Mesh, v: u32| m.positions[v as usize].to_array().map(f32::to_bits);
+    for mesh in &scene.meshes {
+        for t in &mesh.triangles {
+            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (key(mesh, a), key(mesh, b))) {
+                *walked.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+    }
+    walked.values().filter(|&&n| n != 0).count()
+}
+
+fn longest(scene: &Scene) -> f32 {
+    let edges = scene.meshes.iter().flat_map(|m| {
+        m.triangles
+            .iter()
+            .flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
+            .map(|(a, b)| m.positions[a as usize].distance(m.positions[b as usize]))
+    });
+    edges.fold(0.0, f32::max)
+}
+
+#[test]
+fn surface_stays_the_same() {
+    let scene = scene::builtin("closed-room").expect("builtin");
+    for edge in [0.5, 0.11, 0.0313] {
+        let refined = refine(&scene, &with(Refine::Edge(edge))).expect("splits");
+        assert!((area(&refined) / area(&scene) - 1.0).abs() < 1e-5, "area is kept at {edge}");
+        assert_eq!(open_edges(&refined), 0, "no gap opens at {edge}");
+        assert!(longest(&refined) <= edge, "edges of {} at {edge}", longest(&refined));
+        for mesh in &refined.meshes {
+            assert_eq!(mesh.normals.len(), mesh.positions.len(), "every vertex has a normal");
+            assert!(mesh.normals.iter().all(|n| n.is_normalized()), "normals stay unit");
+        }
+    }
+}
+
+/// The check for gaps sees one: a vertex on an edge that only one side of it knows.
+#[test]
+fn surface_stays_the_same_can_fail() {
+    let mut scene = scene::builtin("closed-room").expect("builtin");
+    let mesh = &mut scene.meshes[0];
+    let [a, b, c] = mesh.triangles[0];
+    let middle = mesh.positions.len() as u32;
+    mesh.positions.push(0.5 * (mesh.positions[a as usize] + mesh.positions[b as usize]));
+    mesh.triangles[0] = [a, middle, c];
+    mesh.triangles.push([middle, b, c]);
+    assert!(open_edges(&scene) > 0, "a T-junction must be seen");
+}
+
+/// Two meshes that share a border stay joined, since only the length of an edge decides.
+#[test]
+fn meshes_stay_joined() {
+    let quad = |corners: [[f32; 3]; 4]| Mesh {
+        positions: corners.map(Vec3::from_array).to_vec(),
+        normals: vec![Vec3::Y; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
+    let left = quad([[0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [1.7, 0.0, 3.0], [1.7, 0.0, 0.0]]);
+    let right = quad([[1.7, 0.0, 0.0], [1.7, 0.0, 3.0], [9.0, 0.0, 3.0], [9.0, 0.0, 0.0]]);
+    let scene = Scene { meshes: vec![left, right], materials: vec![scene::Material::default()], ..Scene::default() };
+    let refined = refine(&scene, &with(Refine::Edge(0.4))).expect("splits");
+    let on_border = |m: &Mesh| {
+        let mut z: Vec<u32> = m.positions.iter().filter(|p| p.x == 1.7).map(|p| p.z.to_bits()).collect();
+        z.sort_unstable();
+        z.dedup();
+        z
+    };
+    assert_eq!(on_border(&refined.meshes[0]), on_border(&refined.meshes[1]), "the border is cut alike");
+    assert!(on_border(&refined.meshes[0]).len() > 8, "the border is cut");
+}
+
+/// What nothing shadows is left alone: its transfer varies with the normal only.
+#[test]
+fn auto_splits_only_what_calls_for_it() {
+    for name in ["plane", "sphere", "furnace-box"] {
+        let scene = scene::builtin(name).expect("builtin");
+        assert!(matches!(refine(&scene, &with(Refine::Auto)), Ok(Cow::Borrowed(_))), "{name} needs no splitting");
+    }
+    let mut coarse = scene::builtin("sphere-on-plane").expect("builtin");
+    let mut plane = scene::builtin("plane").expect("builtin").meshes.remove(0);
+    plane.positions = vec![Vec3::new(-3.0, 0.0, -3.0), Vec3::new(-3.0, 0.0, 3.0), Vec3::new(3.0, 0.0, 3.0)];
+    plane.normals = vec![Vec3::Y; 3];
+    plane.triangles = vec![[0, 1, 2]];
+    coarse.meshes.retain(|m| m.positions.iter().any(|p| p.y > 0.1));
+    coarse.meshes.push(plane);
+    let refined = refine(&coarse, &with(Refine::Auto)).expect("splits");
+    assert!(refined.vertex_count() > coarse.vertex_count() + 1000, "one triangle cannot hold a shadow");
+    let off = refine(&coarse, &with(Refine::Off)).expect("nothing to do");
+    assert!(matches!(off, Cow::Borrowed(_)), "off is off");
+    assert!(refine(&coarse, &with(Refine::Edge(0.0))).is_err(), "no edge has length 0");
+}
