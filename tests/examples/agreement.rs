@@ -33,33 +33,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         None => Environment::load(Path::new(probe_name), &LoadOptions::lenient())?.0,
     };
     let bands = Bands::new(bake::settings::standard().bands).ok_or("no such number of bands")?;
-    let light = BandLight::of(&environment, bands);
+    let light = BandLight::new(&sh_math::project(bands, environment.samples()));
     println!("{scene_name} under {probe_name}: {} vertices", scene.vertex_count());
-    println!(
-        "| bounces | receivers | paths | difference | bias | noise | median | 95 % | left out | bake s | paths s |"
-    );
     for (bounces, limit) in [(Bounces::Fixed(0), Some(0)), (Bounces::Fixed(1), Some(1)), (Bounces::Auto, None)] {
         let start = Instant::now();
         let subject = Subject::bake(scene.clone(), bounces, quality, count);
         let baked = start.elapsed().as_secs_f64();
-        let (f, mut rows) = measure(&subject, &light, limit, 0.0048);
-        println!(
-            "| {} | {} | {} | {:.2} % | {:+.2} % | {:.2} % | {:.2} % | {:.2} % | {} | {baked:.0} | {:.0} |",
-            subject.prt.achieved.bounces,
-            f.receivers,
-            f.paths,
-            100.0 * f.difference,
-            100.0 * f.bias,
-            100.0 * f.noise,
-            100.0 * f.relative[0],
-            100.0 * f.relative[1],
-            subject.left_out,
-            start.elapsed().as_secs_f64() - baked,
-        );
-        rows.sort_by(|a, b| b.difference().total_cmp(&a.difference()));
-        for row in rows.iter().take(arguments.get(4).map_or(Ok(0), |n| n.parse())?) {
-            println!("    {row:?} at {:?}", subject.prt.geometry.positions[row.row]);
-        }
+        let f = measure(&subject, &light, limit, 0.0048);
+        let (bounces, traced) = (subject.prt.achieved.bounces, start.elapsed().as_secs_f64() - baked);
+        println!("{bounces} bounces, baked in {baked:.0} s, traced in {traced:.0} s, {f}");
     }
     Ok(())
 }

@@ -1,32 +1,22 @@
 //! One light, seen by both sides: as coefficients and as a picture.
 
-use glam::Quat;
 use probe_io::{Environment, Layout, Probe};
-use sh_math::{Bands, Rgb};
+use sh_math::Rgb;
 
 /// Rows of the picture: a texel of 0.7 degrees is flat to any band that is used here.
 const ROWS: usize = 256;
 
 /// The reconstruction of a light from few bands.
-pub struct BandLight {
+pub(crate) struct BandLight {
     /// Coefficients of the picture, texel by texel, so that both sides hold the same light to the last digits.
-    pub coefficients: Rgb,
+    pub(crate) coefficients: Rgb,
     /// The picture for the path tracer; negative where the reconstruction is.
-    pub picture: reference::Light,
+    pub(crate) picture: reference::Light,
 }
 
 impl BandLight {
-    /// Keeps `bands` bands of an environment, as they are: no window.
-    pub fn of(environment: &Environment, bands: Bands) -> Self {
-        Self::new(&sh_math::project(bands, environment.samples()))
-    }
-
-    /// The same light from the other side: half a turn about y.
-    pub fn turned(&self) -> Self {
-        Self::new(&self.coefficients.rotated(Quat::from_rotation_y(std::f32::consts::PI)))
-    }
-
-    fn new(light: &Rgb) -> Self {
+    /// The reconstruction of coefficients, as they are.
+    pub(crate) fn new(light: &Rgb) -> Self {
         let blank =
             Probe { layout: Layout::Equirect, width: 2 * ROWS, height: ROWS, pixels: vec![[0.0; 3]; 2 * ROWS * ROWS] };
         let pixels: Vec<[f32; 3]> = blank.texels().map(|t| light.reconstruct(t.direction.as_vec3())).collect();

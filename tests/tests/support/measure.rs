@@ -2,54 +2,57 @@
 
 use super::{BandLight, Subject};
 use reference::{Estimate, Settings, World, radiance_at};
+use std::fmt::{Display, Formatter};
 
 /// Paths of the first look, which tells how many are needed.
 const FIRST_LOOK: u32 = 256;
+/// Receivers named among the worst.
+const WORST: usize = 4;
 /// Most paths per receiver.
 const MOST: u32 = 1 << 20;
 
 /// How far a bake is from the path tracer. Shares of the mean radiance, which is the mean of the absolute radiance
 /// over all compared receivers and channels.
-#[derive(Debug, Clone, Copy)]
-pub struct Figures {
+pub(crate) struct Figures {
     /// Receivers compared.
-    pub receivers: usize,
+    pub(crate) receivers: usize,
+    /// Receivers drawn but left out: they stand inside bodies or have no normal.
+    pub(crate) left_out: usize,
     /// Paths per receiver.
-    pub paths: u32,
+    pub(crate) paths: u32,
     /// Mean of |bake - reference| over receivers and channels, as a share of the mean radiance.
-    pub difference: f64,
+    pub(crate) difference: f64,
     /// Mean of bake - reference, as a share of the mean radiance: what does not average out.
-    pub bias: f64,
+    pub(crate) bias: f64,
     /// Mean standard error of the reference, as a share of the mean radiance.
-    pub noise: f64,
+    pub(crate) noise: f64,
     /// Median and 95th percentile over receivers brighter than a tenth of the mean of |bake - reference|, summed over
     /// channels, as a share of the receiver's own radiance.
-    pub relative: [f64; 2],
-    /// Mean radiance.
-    pub radiance: f64,
+    pub(crate) relative: [f64; 2],
+    /// The receivers that differ most, in words.
+    pub(crate) worst: String,
 }
 
 /// Compares the rows of a subject under a light, with as many paths as bring the noise of the reference to `noise`.
-pub fn measure(subject: &Subject, light: &BandLight, max_bounces: Option<u32>, noise: f64) -> (Figures, Vec<Row>) {
+pub(crate) fn measure(subject: &Subject, light: &BandLight, max_bounces: Option<u32>, noise: f64) -> Figures {
     let world = World::new(&subject.scene);
     let points = subject.points();
     let trace = |samples, seed| radiance_at(&world, &light.picture, &points, &Settings { samples, seed, max_bounces });
-    let look = figures(&rows(subject, light, &trace(FIRST_LOOK, 1)), FIRST_LOOK);
+    let look = figures(subject, rows(subject, light, &trace(FIRST_LOOK, 1)), FIRST_LOOK);
     let needed = f64::from(FIRST_LOOK) * (look.noise / noise).powi(2);
     let paths = (needed.ceil() as u32).clamp(FIRST_LOOK, MOST);
-    let rows = rows(subject, light, &trace(paths, 2));
-    (figures(&rows, paths), rows)
+    figures(subject, rows(subject, light, &trace(paths, 2)), paths)
 }
 
 /// What both sides say of a receiver.
 #[derive(Debug, Clone, Copy)]
-pub struct Row {
+struct Row {
     /// Row of the transfer.
-    pub row: usize,
+    row: usize,
     /// Radiance by the bake.
-    pub baked: [f64; 3],
+    baked: [f64; 3],
     /// Radiance by the path tracer.
-    pub traced: Estimate,
+    traced: Estimate,
 }
 
 impl Row {
@@ -58,12 +61,12 @@ impl Row {
     }
 
     /// Sum over the channels of |bake - reference|.
-    pub fn difference(&self) -> f64 {
+    fn difference(&self) -> f64 {
         self.baked.iter().zip(self.traced()).map(|(a, b)| (a - b).abs()).sum()
     }
 
     /// Sum over the channels of the reference's absolute radiance.
-    pub fn size(&self) -> f64 {
+    fn size(&self) -> f64 {
         self.traced().iter().map(|v| v.abs()).sum()
     }
 }
@@ -74,7 +77,7 @@ fn rows(subject: &Subject, light: &BandLight, traced: &[Estimate]) -> Vec<Row> {
     subject.rows.iter().zip(traced).map(row).collect()
 }
 
-fn figures(rows: &[Row], paths: u32) -> Figures {
+fn figures(subject: &Subject, mut rows: Vec<Row>, paths: u32) -> Figures {
     let sum = |value: &dyn Fn(&Row) -> f64| rows.iter().map(value).sum::<f64>();
     let total = sum(&Row::size);
     let signed = sum(&|r| r.baked.iter().zip(r.traced()).map(|(a, b)| a - b).sum());
@@ -84,13 +87,29 @@ fn figures(rows: &[Row], paths: u32) -> Figures {
         rows.iter().filter(|r| r.size() > 0.1 * mean).map(|r| r.difference() / r.size()).collect();
     relative.sort_by(f64::total_cmp);
     let at = |share: f64| relative.get((relative.len() as f64 * share) as usize).copied().unwrap_or(f64::NAN);
+    rows.sort_by(|a, b| b.difference().total_cmp(&a.difference()));
+    let told = |r: &Row| format!("  {:?} at {:?}\n", r, subject.prt.geometry.positions[r.row]);
+    let worst = rows.iter().take(WORST).map(told).collect();
+    let sum = |value: &dyn Fn(&Row) -> f64| rows.iter().map(value).sum::<f64>();
     Figures {
         receivers: rows.len(),
+        left_out: subject.left_out,
         paths,
         difference: sum(&Row::difference) / total,
         bias: signed / total,
         noise: spread / total,
         relative: [at(0.5), at(0.95)],
-        radiance: mean / 3.0,
+        worst,
+    }
+}
+
+impl Display for Figures {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let [median, most] = self.relative;
+        let shares = [self.difference, self.bias, self.noise, median, most].map(|share| 100.0 * share);
+        let [difference, bias, noise, median, most] = shares;
+        write!(f, "{} receivers ({} left out), {} paths: ", self.receivers, self.left_out, self.paths)?;
+        write!(f, "difference {difference:.2} %, bias {bias:+.2} %, noise {noise:.2} %, ")?;
+        write!(f, "per receiver median {median:.2} %, 95th percentile {most:.2} %; worst:\n{}", self.worst)
     }
 }

@@ -4,6 +4,6 @@ mod light;
 mod measure;
 mod subject;
 
-pub use light::BandLight;
-pub use measure::{Figures, measure};
-pub use subject::Subject;
+pub(crate) use light::BandLight;
+pub(crate) use measure::measure;
+pub(crate) use subject::Subject;

@@ -16,22 +16,22 @@ const PROBES: u32 = 256;
 const BURIED: f32 = 0.4;
 
 /// A scene, its bake, and the rows that are compared.
-pub struct Subject {
+pub(crate) struct Subject {
     /// As loaded: the path tracer sees it before the bake splits large triangles.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
     /// The bake.
-    pub prt: Prt,
+    pub(crate) prt: Prt,
     /// Row `r` of the transfer belongs to receiver `r`.
     receivers: Vec<Receiver>,
     /// Rows drawn at random from those whose values are their own, without repetition.
-    pub rows: Vec<usize>,
+    pub(crate) rows: Vec<usize>,
     /// Rows drawn but left out: they stand inside bodies or have no normal.
-    pub left_out: usize,
+    pub(crate) left_out: usize,
 }
 
 impl Subject {
     /// Bakes a scene and draws `count` receivers.
-    pub fn bake(scene: Scene, bounces: Bounces, quality: Quality, count: usize) -> Self {
+    pub(crate) fn bake(scene: Scene, bounces: Bounces, quality: Quality, count: usize) -> Self {
         let settings = Settings { bounces, quality, ..bake::settings::standard() };
         let prt = bake::bake(&scene, &settings, &|_| ControlFlow::Continue(())).expect("the scene bakes");
         let all = Receivers::of(&bake::refine(&scene, &settings).expect("the bake has split it before"));
@@ -42,7 +42,7 @@ impl Subject {
     }
 
     /// The compared receivers as the path tracer takes them.
-    pub fn points(&self) -> Vec<reference::Receiver> {
+    pub(crate) fn points(&self) -> Vec<reference::Receiver> {
         let point = |&row: &usize| {
             let r = &self.receivers[row];
             reference::Receiver {
@@ -56,7 +56,7 @@ impl Subject {
     }
 
     /// Outgoing radiance of a row under a light: albedo times transfer times light.
-    pub fn radiance(&self, row: usize, light: &sh_math::Rgb) -> [f64; 3] {
+    pub(crate) fn radiance(&self, row: usize, light: &sh_math::Rgb) -> [f64; 3] {
         let transfer = &self.prt.transfer;
         let (n, channels) = ((transfer.bands * transfer.bands) as usize, transfer.channels as usize);
         let values = &transfer.values[row * n * channels..][..n * channels];
