@@ -70,19 +70,60 @@ fn corner<F: Lanes>(block: &Block, k: usize, from: Point<F>) -> Point<F> {
     sub(at, from)
 }
 
+/// The corners from a point.
+#[inline(always)]
+fn corners<F: Lanes>(block: &Block, origin: Vec3) -> [Point<F>; 3] {
+    let from = [F::splat(origin.x), F::splat(origin.y), F::splat(origin.z)];
+    [corner(block, 0, from), corner(block, 1, from), corner(block, 2, from)]
+}
+
+/// Volume on the corners and the bound on its rounding, from the plane of edge bc.
+#[inline(always)]
+fn whole<F: Lanes>(a: Point<F>, (normal, bound): (Point<F>, F)) -> (F, F) {
+    (dot(a, normal), size(a).mul(bound).add(F::splat(UNDERFLOW)))
+}
+
+/// Which triangles of a block one direction from a point may meet, and which of those beyond doubt: for a ray that
+/// shares its origin with no other.
+#[inline(always)]
+pub(crate) fn glance<F: Lanes>(block: &Block, origin: Vec3, direction: Vec3) -> (u32, u32) {
+    let [a, b, c] = corners::<F>(block, origin);
+    let d = [F::splat(direction.x), F::splat(direction.y), F::splat(direction.z)];
+    let zero = F::splat(0.0);
+    let first = edge(b, c);
+    let (mut ahead, mut behind, mut surely_ahead, mut surely_behind) = (0, 0, u32::MAX, u32::MAX);
+    for (normal, bound) in [first, edge(c, a), edge(a, b)] {
+        let product = dot(d, normal);
+        let (most, least) = (product.add(bound), product.sub(bound));
+        let (negative, positive) = (zero.above(most), least.above(zero));
+        ahead |= negative;
+        behind |= positive;
+        surely_ahead &= positive;
+        surely_behind &= negative;
+    }
+    let open = !(ahead & behind) & block.valid;
+    if open == 0 {
+        return (0, 0);
+    }
+    let (whole, bound) = whole(a, first);
+    let sure = (surely_ahead & whole.above(bound)) | (surely_behind & zero.sub(bound).above(whole));
+    (open, open & sure)
+}
+
 /// Looks at a block from a point.
 #[inline(always)]
 pub(crate) fn see<F: Lanes>(block: &Block, origin: Vec3) -> Seen {
-    let from = [F::splat(origin.x), F::splat(origin.y), F::splat(origin.z)];
-    let (a, b, c) = (corner(block, 0, from), corner(block, 1, from), corner(block, 2, from));
+    let [a, b, c] = corners::<F>(block, origin);
     let edges = [edge(b, c), edge(c, a), edge(a, b)];
-    let whole = dot(a, edges[0].0);
-    let whole_bound = size(a).mul(edges[0].1).add(F::splat(UNDERFLOW));
+    let (whole, whole_bound) = whole(a, edges[0]);
     let sure = whole.abs().above(whole_bound) & block.valid;
     let turn = F::where_less(whole, F::splat(0.0), F::splat(-1.0), F::splat(1.0));
     let mut turn = turn.mul(F::load(&PRESENT[block.valid as usize % 16]));
     if sure != block.valid {
-        turn = F::load(&settle(block, origin));
+        let mut turns = [0.0; BLOCK];
+        turn.store(&mut turns);
+        settle(block, origin, sure, &mut turns);
+        turn = F::load(&turns);
     }
     let mut seen = Seen::NOTHING;
     let missing = F::where_less(turn.abs(), F::splat(0.5), F::splat(-1.0), F::splat(0.0));
@@ -111,16 +152,18 @@ const fn present() -> [[f32; BLOCK]; 16] {
     table
 }
 
-/// Decides exactly on which side of each triangle the origin lies, where single precision leaves one open.
+/// Decides exactly on which side the origin lies of the triangles that single precision left open.
 #[cold]
 #[inline(never)]
-fn settle(block: &Block, origin: Vec3) -> [f32; BLOCK] {
-    std::array::from_fn(|lane| {
+fn settle(block: &Block, origin: Vec3, sure: u32, turns: &mut [f32; BLOCK]) {
+    let mut open = block.valid & !sure;
+    while open != 0 {
+        let lane = open.trailing_zeros() as usize;
+        open &= open - 1;
         let [a, b, c] = block.corners(lane).map(|corner| corner - origin);
         let whole = volume(a, b, c);
-        let counts = block.valid >> lane & 1 == 1 && whole != 0.0;
-        if counts { whole.signum() as f32 } else { 0.0 }
-    })
+        turns[lane] = if whole == 0.0 { 0.0 } else { whole.signum() as f32 };
+    }
 }
 
 /// Which triangles of a block some direction between two corners of a box may meet.

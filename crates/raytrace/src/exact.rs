@@ -26,6 +26,10 @@ pub(crate) fn volume(a: Vec3, b: Vec3, c: Vec3) -> f64 {
     if value.abs() > ROUNDING * size {
         return value;
     }
+    if size == 0.0 {
+        // Flat in an axis plane through the origin, as walls and floors often are.
+        return 0.0;
+    }
     expansion_sum([(ax, yz), (-ax, zy), (ay, zx), (-ay, xz), (az, xy), (-az, yx)])
 }
 

@@ -1,6 +1,5 @@
 //! One ray through the tree to its nearest hit.
 
-use crate::block::candidates;
 use crate::lanes::{Lanes, Path};
 use crate::ray::{Hit, Line, meet};
 use crate::tree::{Block, Child, Node, Tree, WIDTH};
@@ -26,8 +25,7 @@ impl Best {
         solid: Solid<'_>,
         view: &mut impl View,
     ) {
-        let seen = view.view::<P::Four>(tree, index);
-        let (open, _) = candidates::<P::Four>(seen, line.direction);
+        let (open, _) = view.test::<P::Four>(tree, index, line);
         let mut open = open & lanes;
         while open != 0 {
             let lane = open.trailing_zeros() as usize;

@@ -5,7 +5,7 @@ use crate::lanes::{Lanes, Path};
 use crate::ray::Line;
 use crate::sight::{Occluders, PER_CELL, Plane3, Sights};
 use crate::tree::{Child, Node, Tree, WIDTH};
-use crate::walk::{Apart, LATER, PERMUTED, Solid, View, Walker, blocked, blocked_for_sure};
+use crate::walk::{Apart, LATER, PERMUTED, Solid, Walker, blocked, blocked_for_sure};
 use glam::Vec3;
 
 /// Packets with at most this many rays left are walked ray by ray.

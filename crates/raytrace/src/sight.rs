@@ -1,7 +1,8 @@
 //! What one origin has seen of the triangles: prepared blocks, and the triangles that blocked its last rays.
 
-use crate::block::{Seen, see};
+use crate::block::{Seen, candidates, see};
 use crate::lanes::Lanes;
+use crate::ray::Line;
 use crate::tree::Tree;
 use crate::walk::View;
 use glam::Vec3;
@@ -36,10 +37,10 @@ impl Sights {
     }
 }
 
-impl View for Sights {
+impl Sights {
     /// A block as the origin sees it.
     #[inline(always)]
-    fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
+    pub(crate) fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
         let place = block % REMEMBERED;
         let key = self.fan << 32 | block as u64;
         if self.keys[place] != key {
@@ -47,6 +48,13 @@ impl View for Sights {
             self.seen[place] = see::<F>(&tree.blocks[block], self.origin);
         }
         &self.seen[place]
+    }
+}
+
+impl View for Sights {
+    #[inline(always)]
+    fn test<F: Lanes>(&mut self, tree: &Tree, block: usize, line: &Line) -> (u32, u32) {
+        candidates::<F>(self.view::<F>(tree, block), line.direction)
     }
 }
 

@@ -1,6 +1,5 @@
 //! The public face: triangles in, answers about rays out.
 
-use crate::block::Seen;
 use crate::build::build;
 use crate::lanes::Path;
 use crate::level::{Job, Level, dispatch};
@@ -91,9 +90,8 @@ impl Job for Closest<'_> {
 
     #[inline(always)]
     fn run<P: Path>(self) -> Option<Hit> {
-        let mut view = Fresh { origin: self.line.origin, seen: Seen::NOTHING };
         let walker = Walker::new(self.tree, self.line);
-        nearest::<P>(self.tree, &walker, Best::default(), self.stack, self.solid, &mut view).hit
+        nearest::<P>(self.tree, &walker, Best::default(), self.stack, self.solid, &mut Fresh).hit
     }
 }
 
@@ -110,8 +108,7 @@ impl Job for Occluded<'_> {
 
     #[inline(always)]
     fn run<P: Path>(self) -> bool {
-        let mut view = Fresh { origin: self.line.origin, seen: Seen::NOTHING };
         let walker = Walker::new(self.tree, self.line);
-        blocked::<P>(self.tree, &walker, Child::node(0), self.stack, self.solid, &mut view).is_some()
+        blocked::<P>(self.tree, &walker, Child::node(0), self.stack, self.solid, &mut Fresh).is_some()
     }
 }

@@ -1,6 +1,6 @@
 //! One ray through the tree, until anything blocks it.
 
-use crate::block::{Seen, candidates, see};
+use crate::block::glance;
 use crate::lanes::{Lanes, Path};
 use crate::ray::{Line, meet};
 use crate::tree::{Block, Child, Node, Tree, WIDTH};
@@ -97,22 +97,19 @@ impl Walker {
     }
 }
 
-/// Where a walk gets its prepared blocks from.
+/// How a walk tests blocks: with what was prepared for the origin, or anew.
 pub(crate) trait View {
-    fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen;
+    /// Which triangles a line may meet, and which of those beyond doubt.
+    fn test<F: Lanes>(&mut self, tree: &Tree, block: usize, line: &Line) -> (u32, u32);
 }
 
-/// Prepares each block anew: for a ray that shares its origin with no other.
-pub(crate) struct Fresh {
-    pub(crate) origin: Vec3,
-    pub(crate) seen: Seen,
-}
+/// Tests each block anew: for a ray that shares its origin with no other.
+pub(crate) struct Fresh;
 
 impl View for Fresh {
     #[inline(always)]
-    fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
-        self.seen = see::<F>(&tree.blocks[block], self.origin);
-        &self.seen
+    fn test<F: Lanes>(&mut self, tree: &Tree, block: usize, line: &Line) -> (u32, u32) {
+        glance::<F>(&tree.blocks[block], line.origin, line.direction)
     }
 }
 
@@ -130,8 +127,8 @@ pub(crate) fn blocked<P: Path>(
     let mut child = from;
     loop {
         if let Some(index) = child.as_block() {
-            let seen = view.view::<P::Four>(tree, index);
-            let found = blocked_by::<P>(&tree.blocks[index], seen, &walker.line, solid);
+            let tested = view.test::<P::Four>(tree, index, &walker.line);
+            let found = blocked_by(&tree.blocks[index], tested, &walker.line, solid);
             if let Some(lane) = found {
                 stack.truncate(base);
                 return Some((index, lane));
@@ -163,8 +160,7 @@ fn push<P: Path>(tree: &Tree, stack: &mut Vec<u32>, node: &Node, mask: u32, octa
 
 /// The lane of a triangle of a block that blocks a ray.
 #[inline(always)]
-pub(crate) fn blocked_by<P: Path>(block: &Block, seen: &Seen, line: &Line, solid: Solid<'_>) -> Option<usize> {
-    let (mut open, sure) = candidates::<P::Four>(seen, line.direction);
+fn blocked_by(block: &Block, (mut open, sure): (u32, u32), line: &Line, solid: Solid<'_>) -> Option<usize> {
     let sure = if line.endless() { sure & !block.masked } else { 0 };
     if sure != 0 {
         return Some(sure.trailing_zeros() as usize);
