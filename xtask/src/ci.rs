@@ -18,6 +18,8 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     command::run(&cargo, &["fmt", "--all", "--check"])?;
     tidy::run()?;
     command::run(&cargo, &["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"])?;
+    let document = ["doc", "--release", "--workspace", "--no-deps"];
+    command::run_with(&[("RUSTDOCFLAGS", "-Dwarnings")], &cargo, &document)?;
     if !options.fast {
         command::run(&cargo, &["test", "--release", "--workspace"])?;
         command::run(&cargo, &["xtask", "pipeline", "--size", "320x180"])?;

@@ -1,7 +1,8 @@
-//! The order of commands: `cargo xtask pipeline | ci | tidy | bench`. Runs commands; holds no algorithm.
+//! The order of commands: `cargo xtask pipeline | ci | tidy | golden | bench`. Runs commands; holds no algorithm.
 
 mod bench;
 mod ci;
+mod golden;
 mod pipeline;
 mod run;
 mod tidy;
@@ -24,6 +25,9 @@ enum Task {
     Ci(ci::Options),
     /// Checks the arrows between crates and the shape of the sources.
     Tidy,
+    /// Compares golden pictures with what is drawn today, or accepts it by name.
+    #[command(subcommand)]
+    Golden(golden::Act),
     /// Runs the benchmarks; --record writes a dated record to docs/bench.
     Bench(bench::Options),
 }
@@ -33,6 +37,7 @@ fn main() -> anyhow::Result<()> {
         Task::Pipeline(options) => pipeline::run(&options),
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
+        Task::Golden(act) => golden::run(&act),
         Task::Bench(options) => bench::run(&options),
     }
 }

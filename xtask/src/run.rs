@@ -20,8 +20,17 @@ pub(crate) fn cargo() -> String {
 /// # Errors
 /// Where it cannot be started or does not succeed.
 pub(crate) fn run(program: &str, arguments: &[&str]) -> Result<()> {
-    show(program, arguments);
+    run_with(&[], program, arguments)
+}
+
+/// Runs a command with more in its environment, after printing it.
+///
+/// # Errors
+/// Where it cannot be started or does not succeed.
+pub(crate) fn run_with(environment: &[(&str, &str)], program: &str, arguments: &[&str]) -> Result<()> {
+    show(environment, program, arguments);
     let status = Command::new(program)
+        .envs(environment.iter().copied())
         .args(arguments)
         .current_dir(root())
         .status()
@@ -49,7 +58,8 @@ pub(crate) fn output(program: &str, arguments: &[&str]) -> Result<String> {
 }
 
 #[expect(clippy::print_stdout, reason = "a task shows what it runs")]
-fn show(program: &str, arguments: &[&str]) {
+fn show(environment: &[(&str, &str)], program: &str, arguments: &[&str]) {
     let name = std::path::Path::new(program).file_name().map_or(program.into(), |n| n.to_string_lossy());
-    println!("$ {name} {}", arguments.join(" "));
+    let set: String = environment.iter().map(|(name, value)| format!("{name}={value} ")).collect();
+    println!("$ {set}{name} {}", arguments.join(" "));
 }

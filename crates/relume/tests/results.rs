@@ -2,7 +2,7 @@
 
 mod command;
 
-use command::{complaint, relume};
+use command::{command, complaint, relume};
 use std::fs;
 use std::path::Path;
 
@@ -64,6 +64,43 @@ fn threads_do_not_change_a_bake() {
     assert_eq!(bytes("1.prt"), bytes("2.prt"));
     // The comparison can fail: another seed is another file.
     assert_ne!(bytes("1.prt"), bytes("other.prt"));
+}
+
+/// From a scene to its picture twice: file and pictures are the same byte by byte.
+#[test]
+fn the_same_commands_give_the_same_bytes() {
+    let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+    let names = ["a.prt", "a.png", "a.exr", "other.png"];
+    let [first, second] = folders.each_ref().map(|folder| {
+        let folder = folder.path();
+        succeed(folder, &["bake", "builtin:cornell-box", "-o", "a.prt", "--bands", "3", "--rays", "64"]);
+        for (picture, turn) in [("a.png", "0,0,0"), ("a.exr", "0,0,0"), ("other.png", "10,0,0")] {
+            let light = ["--probe", "builtin:studio", "--rotate", turn];
+            let render = ["render", "a.prt", "-o", picture, "--size", "96x64", "--backend", "cpu"];
+            succeed(folder, &[&render[..], &light].concat());
+        }
+        names.map(|name| fs::read(folder.join(name)).unwrap())
+    });
+    for (name, (a, b)) in names.iter().zip(first.iter().zip(&second)) {
+        assert!(a == b, "{name} differs from one run to the next");
+    }
+    // The comparison can fail: a light turned by ten degrees is another picture.
+    assert!(first[1] != first[3], "the turned light must show");
+}
+
+/// Whatever drivers there are, none is in sight: the CPU draws and says so.
+#[test]
+fn without_any_driver_the_cpu_draws() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    succeed(folder, &["bake", "builtin:sphere", "-o", "a.prt", "--bands", "2"]);
+    let render = ["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--size", "32x32"];
+    let mut command = command(folder, &render);
+    command.env_remove("WGPU_BACKEND").env("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent");
+    let output = command.output().unwrap();
+    let said = complaint(&output);
+    assert!(output.status.success() && said.contains("on the CPU"), "{said}");
+    assert!(folder.join("a.png").exists());
 }
 
 /// A plane of albedo a under a white sky has radiance a; the sky behind has 1.
