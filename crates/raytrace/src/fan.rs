@@ -41,7 +41,7 @@ impl Default for FanState {
 
 impl Tracer {
     /// Whether anything lies on each of many endless rays from one point: bit `i % 64` of `blocked[i / 64]` for the
-    /// unit direction (xs, ys, zs)[i]; further bits are cleared. `solid` as for [`Tracer::closest`].
+    /// unit direction `(xs[i], ys[i], zs[i])`; further bits are cleared. `solid` as for [`Tracer::closest`].
     ///
     /// Fast where neighbours in the list point in similar directions.
     ///
