@@ -92,7 +92,7 @@ impl SphereBins {
     /// Tests unit directions against a density per solid angle.
     ///
     /// # Errors
-    /// As [`test`]; also when a direction is not unit or lies outside `z_range`.
+    /// As [`test()`]; also when a direction is not unit or lies outside `z_range`.
     pub fn test(
         &self,
         directions: &[[f64; 3]],

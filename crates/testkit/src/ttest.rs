@@ -36,7 +36,7 @@ pub fn test(samples: &[f64], expected: f64, alpha: f64, n_tests: usize) -> Resul
 /// Tests a mean of many samples and its standard error against the expected value.
 ///
 /// # Errors
-/// As [`test`]; a standard error of 0 allows only rounding.
+/// As [`test()`]; a standard error of 0 allows only rounding.
 pub fn z_test(mean: f64, std_error: f64, expected: f64, alpha: f64, n_tests: usize) -> Result<f64, String> {
     if std_error == 0.0 {
         return exact(mean, expected);
