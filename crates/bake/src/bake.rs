@@ -12,7 +12,7 @@ use crate::refine::refine;
 use crate::repair::{Finding, Repair};
 use crate::world::World;
 use crate::{Error, settings};
-use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Settings};
+use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Quality, Settings};
 use scene::Scene;
 use sh_math::Bands;
 use std::borrow::Cow;
@@ -140,8 +140,16 @@ impl<'a> Run<'a> {
     /// Whether what all receivers see may be kept in memory; otherwise each bounce finds it again.
     fn hits_fit(&self) -> bool {
         let fields = 3 * Field::bytes(self.receivers.list.len(), self.last.coefficients, self.last.channels);
-        let hits = self.plan.shadowed_receivers * TYPICAL_HITS * size_of::<crate::gather::PackedHit>() as u64;
+        let hits = self.plan.shadowed_receivers * self.assumed_hits() * size_of::<crate::gather::PackedHit>() as u64;
         fields + hits <= self.settings.memory
+    }
+
+    /// Surfaces that a receiver is assumed to see: all that a fixed number of rays can find, or the usual number.
+    fn assumed_hits(&self) -> u64 {
+        match self.settings.quality {
+            Quality::Rays(n) => u64::from(n),
+            Quality::Error(_) => TYPICAL_HITS,
+        }
     }
 
     /// What the given receivers see directly.

@@ -31,6 +31,10 @@ pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, 
         }
         first += mesh.positions.len() as u32;
     }
+    // The transfer is about the receivers' normals, which are those of the mesh but for bad ones.
+    for (normal, receiver) in parts.geometry.normals.iter_mut().zip(&receivers.list) {
+        *normal = receiver.normal.to_array();
+    }
     let albedo = parts.albedo;
     let cameras = if scene.cameras.is_empty() { vec![scene::default_camera(scene)] } else { scene.cameras.clone() };
     Prt {

@@ -114,6 +114,17 @@ impl Gatherer<'_> {
         out
     }
 
+    /// Receivers whose results may wait together to be handed on: they take about 256 MiB at most.
+    pub(crate) fn receivers_per_block(&self) -> usize {
+        let hits = match self.quality {
+            _ if !self.hits => 0,
+            Quality::Rays(n) => n as usize,
+            Quality::Error(_) => MAX_BLOCKERS,
+        };
+        let bytes = hits * size_of::<PackedHit>() + self.bands.coefficients() * size_of::<f32>() + 256;
+        ((256 << 20) / bytes).max(1)
+    }
+
     /// Closed form of \[G\] eq. (22): nothing can stand in the way.
     fn unshadowed(&self, receiver: &Receiver) -> Gathered {
         let mut transfer = vec![0.0; self.bands.coefficients()];

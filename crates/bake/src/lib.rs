@@ -7,6 +7,7 @@
 //! Light is carried between diffuse, two-sided surfaces. What blends or transmits lets light pass, emission is
 //! drawn but not transported, and a mask's empty parts do not exist for rays.
 
+mod albedo;
 mod bake;
 mod bundle;
 mod directions;

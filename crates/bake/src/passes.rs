@@ -86,8 +86,7 @@ pub(crate) fn gather_pass(
     let total = order.len() as u64;
     monitor.begin(stage, total);
     let mut chunks = Vec::new();
-    // Blocks bound the memory that results take before they are handed on.
-    for block in order.chunks(CHUNK * 1024) {
+    for block in order.chunks(gatherer.receivers_per_block().next_multiple_of(CHUNK)) {
         let gathered: Vec<(Vec<u32>, Vec<Gathered>)> = block
             .par_chunks(CHUNK)
             .map_init(Worker::new, |worker, ids| {

@@ -1,9 +1,9 @@
 //! Decides, from the scene, which effects are simulated and why.
 
+use crate::albedo::Albedo;
 use crate::receivers::Receivers;
 use crate::world::World;
 use coeff_io::{Bounces, Effect, Effects, Plan, PlanRow, Quality, Settings};
-use glam::Vec3;
 use rayon::prelude::*;
 use scene::{Material, Scene};
 
@@ -11,8 +11,6 @@ use scene::{Material, Scene};
 const SHINY: f32 = 0.6;
 /// Metallic share above which a surface shows a reflection.
 const METALLIC: f32 = 0.05;
-/// Difference between channels from which an albedo counts as coloured; below one step of 8 bits.
-const COLORED: f32 = 2e-3;
 /// Rays per receiver that the estimate assumes where an error is asked for: the median seen at 1 %.
 const TYPICAL_RAYS: f64 = 700.0;
 
@@ -39,12 +37,7 @@ impl Facts {
         let names = |test: &dyn Fn(&Material) -> bool| -> Vec<String> {
             scene.materials.iter().filter(|m| test(m)).map(|m| m.name.clone()).collect()
         };
-        let used: Vec<bool> = {
-            let mut used = vec![false; scene.materials.len()];
-            scene.meshes.iter().for_each(|m| used[m.material as usize] = true);
-            used
-        };
-        let albedos: Vec<Albedo> = (0..scene.materials.len()).map(|m| Albedo::of(scene, m, used[m])).collect();
+        let albedos: Vec<Albedo> = (0..scene.materials.len()).map(|m| Albedo::of(scene, m)).collect();
         let with = |test: &dyn Fn(&Albedo) -> bool| -> Vec<String> {
             let pairs = scene.materials.iter().zip(&albedos);
             pairs.filter(|(m, a)| m.blocks_rays() && test(a)).map(|(m, _)| m.name.clone()).collect()
@@ -67,68 +60,6 @@ impl Facts {
 /// Whether a material shows a reflection that is worth drawing.
 pub(crate) fn shines(material: &Material) -> bool {
     material.metallic > METALLIC || material.roughness < SHINY
-}
-
-/// What a material can reflect.
-struct Albedo {
-    mean: f32,
-    largest: f32,
-    colored: bool,
-}
-
-impl Albedo {
-    fn of(scene: &Scene, material: usize, used: bool) -> Self {
-        let mut sum = Vec3::ZERO;
-        let mut out = Self { mean: 0.0, largest: 0.0, colored: false };
-        if !used {
-            return out;
-        }
-        let colors = possible_colors(scene, material);
-        for &color in &colors {
-            sum += color;
-            out.largest = out.largest.max(color.max_element());
-            out.colored |= color.max_element() - color.min_element() > COLORED;
-        }
-        out.mean = sum.element_sum() / (3 * colors.len().max(1)) as f32;
-        out
-    }
-}
-
-/// Diffuse albedos that a material takes somewhere: all texels of its texture times all its vertex colours' extremes.
-fn possible_colors(scene: &Scene, index: usize) -> Vec<Vec3> {
-    let material = &scene.materials[index];
-    let factor = material.base_color.truncate() * (1.0 - material.metallic);
-    let mut tints = vec![Vec3::ONE];
-    for mesh in scene.meshes.iter().filter(|m| m.material as usize == index && !m.colors.is_empty()) {
-        let step = mesh.colors.len().div_ceil(4096);
-        tints.extend(mesh.colors.iter().step_by(step).map(|c| c.truncate()));
-    }
-    if tints.len() > 1 {
-        tints.remove(0);
-    }
-    let texels = match material.base_color_texture {
-        Some(slot) => sampled_texels(&scene.textures[slot.texture as usize]),
-        None => vec![Vec3::ONE],
-    };
-    // Extremes of a product lie at products: a tint or a texel that is coloured makes the product coloured.
-    let plain = tints.first().copied().unwrap_or(Vec3::ONE);
-    let mut colors: Vec<Vec3> = texels.iter().map(|t| factor * *t * plain).collect();
-    colors.extend(tints.iter().skip(1).map(|t| factor * *t * texels[0]));
-    colors.into_iter().map(|c| c.clamp(Vec3::ZERO, Vec3::ONE)).collect()
-}
-
-/// Linear colours of texels on a grid that visits at most 256 by 256 of them.
-fn sampled_texels(texture: &scene::Texture) -> Vec<Vec3> {
-    let (w, h) = (texture.width as usize, texture.height as usize);
-    let (dx, dy) = (w.div_ceil(256), h.div_ceil(256));
-    let mut out = Vec::new();
-    for y in (0..h).step_by(dy) {
-        for x in (0..w).step_by(dx) {
-            let uv = glam::Vec2::new((x as f32 + 0.5) / w as f32, (y as f32 + 0.5) / h as f32);
-            out.push(texture.sample(uv, true).truncate());
-        }
-    }
-    out
 }
 
 fn mean_albedo(scene: &Scene, albedos: &[Albedo]) -> f32 {
@@ -333,7 +264,7 @@ impl Table<'_> {
             return "--bounces 0".to_owned();
         }
         format!(
-            "surfaces reflect {:.0} % on average: at most {} bounces matter",
+            "surfaces reflect {:.0} % on average: about {} bounces matter",
             100.0 * self.facts.mean_albedo,
             d.bounces
         )

@@ -12,6 +12,8 @@ use std::collections::HashMap;
 
 /// Triangles that a scene of few, large ones is split into at least.
 const LEAST_TRIANGLES: f64 = 20_000.0;
+/// Most triangles that a mesh may be split into.
+const MOST_TRIANGLES: usize = 1 << 23;
 /// Rounds of halving; each halves the longest edges, so that these reach 1/4096 of the first.
 const ROUNDS: usize = 12;
 
@@ -84,13 +86,16 @@ fn split(mesh: &mut Mesh, longest: f32, scene: &str) -> Result<(), Error> {
             triangles.extend(pieces(mesh, triangle, cut));
         }
         mesh.triangles = triangles;
-        let limit = 1 << 28;
-        if mesh.triangles.len() > limit {
-            let (what, count) = ("triangles after splitting (use a larger --refine)", mesh.triangles.len());
-            return Err(Error::TooLarge { scene: scene.to_owned(), what, count, limit });
+        if mesh.triangles.len() > MOST_TRIANGLES {
+            return Err(too_fine(scene, mesh.triangles.len()));
         }
     }
-    Ok(())
+    if has_longer(mesh, longest) { Err(too_fine(scene, mesh.triangles.len())) } else { Ok(()) }
+}
+
+fn too_fine(scene: &str, count: usize) -> Error {
+    let what = "triangles after splitting (use a larger --refine)";
+    Error::TooLarge { scene: scene.to_owned(), what, count, limit: MOST_TRIANGLES }
 }
 
 /// The parts of a triangle whose edges ab, bc, ca are cut at the given vertices.

@@ -1,12 +1,14 @@
 //! Presets and limits of the bake settings.
 
 use crate::Error;
-use coeff_io::{Bounces, Effects, Quality, Refine, Sampler, Settings};
+use coeff_io::{Bounces, Effect, Effects, Quality, Refine, Sampler, Settings};
 
 /// Most bands that a bake may ask for: 1,024 coefficients per receiver and channel.
 pub const MAX_BANDS: u32 = 32;
 /// Most rays per receiver.
 pub const MAX_RAYS: u32 = 1 << 16;
+/// Fewest rays of the stratified sequence: below, none may lie above the horizon.
+const MIN_STRATIFIED: u32 = 16;
 /// Most bounces.
 pub const MAX_BOUNCES: u32 = 1000;
 
@@ -44,6 +46,9 @@ pub fn check(settings: &Settings) -> Result<(), Error> {
         Quality::Rays(n) if n == 0 || n > MAX_RAYS => {
             return refuse("--rays", n.to_string(), "use 1 to 65536");
         }
+        Quality::Rays(n) if n < MIN_STRATIFIED && settings.sampler == Sampler::Stratified => {
+            return refuse("--rays", n.to_string(), "the stratified sequence covers the whole sphere: use 16 or more");
+        }
         Quality::Error(e) if !(1e-4..=1.0).contains(&e) => {
             return refuse("--error", e.to_string(), "use 0.0001 to 1");
         }
@@ -52,6 +57,16 @@ pub fn check(settings: &Settings) -> Result<(), Error> {
             return refuse("--sampler", format!("{:?}", settings.sampler), allowed);
         }
         Quality::Rays(_) | Quality::Error(_) => {}
+    }
+    if let Effects::Only(list) = &settings.effects
+        && list.contains(&Effect::Interreflection)
+        && !list.contains(&Effect::Visibility)
+    {
+        return refuse(
+            "--effects",
+            "interreflection alone".into(),
+            "bounces need to know what is seen: add visibility",
+        );
     }
     if let Refine::Edge(length) = settings.refine
         && !(length > 0.0 && length.is_finite())

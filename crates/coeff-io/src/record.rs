@@ -151,7 +151,8 @@ pub struct Achieved {
 pub struct RepairCounts {
     /// Inside geometry: almost all that they see are the backs of surfaces.
     pub inside: u32,
-    /// With a normal that is no direction.
+    /// With a normal that is no direction or points behind the surface: it is replaced by that of the faces, or, where these
+    /// have none, the neighbours' values are taken.
     pub bad_normals: u32,
     /// Of these, without a sound neighbour: left dark.
     pub unrepaired: u32,

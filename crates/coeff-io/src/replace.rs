@@ -9,6 +9,11 @@ use std::path::Path;
 /// # Errors
 /// Whatever `fill` or the system reports; `path` is then as it was before.
 pub fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
+    // What a link points to is replaced, not the link; what is no file, such as a device, is left alone.
+    let path = &std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if std::fs::metadata(path).is_ok_and(|m| !m.is_file()) {
+        return Err(io::Error::other("it exists and is no ordinary file; give another name"));
+    }
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

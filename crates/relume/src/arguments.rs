@@ -1,7 +1,6 @@
 //! What may be typed: the commands and the options that all of them take.
 
 use crate::{bake, export, inspect, light, plan, reference, render};
-use std::num::NonZeroUsize;
 
 /// Bakes how a scene answers to light, and relights it under any light probe.
 #[derive(Debug, clap::Parser)]
@@ -10,8 +9,8 @@ pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
     /// Threads to work with; all that the machine has by default.
-    #[arg(long, global = true, value_name = "N")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
     /// Say nothing but errors and what was asked for.
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,

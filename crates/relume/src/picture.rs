@@ -84,7 +84,7 @@ fn write_png(path: &Path, size: Size, display: &[[u8; 4]]) -> io::Result<()> {
 #[derive(Debug, clap::Args)]
 pub(crate) struct DisplayOptions {
     /// Exposure in stops.
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops)]
     pub(crate) exposure: f32,
     /// Tone curve of .png files.
     #[arg(long, value_enum, default_value_t = Curve::None)]
@@ -125,6 +125,12 @@ impl DisplayOptions {
         };
         linear.iter().map(|&[r, g, b]| [byte(r), byte(g), byte(b), 255]).collect()
     }
+}
+
+/// Parses an exposure in stops, -64 to 64.
+fn stops(text: &str) -> Result<f32, String> {
+    let stops: f32 = text.parse().map_err(|_| "give a number of stops, such as 1.5".to_owned())?;
+    if stops.abs() <= 64.0 { Ok(stops) } else { Err("give -64 to 64 stops".into()) }
 }
 
 #[cfg(test)]

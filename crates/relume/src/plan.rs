@@ -47,24 +47,28 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         let light = light.as_ref().map(LightFacts::json);
         format!("{:#}", json!({ "scene": scene.name, "settings": settings, "plan": plan, "light": light }))
     } else {
-        let mut text = as_text(&scene.name, &plan)?;
+        let mut text = as_text(&scene.name, &plan, settings.bands)?;
         light.iter().try_for_each(|light| light.write(&mut text, &settings))?;
         text
     };
     console.print(&text)
 }
 
-fn as_text(scene: &str, plan: &Plan) -> Result<String> {
+fn as_text(scene: &str, plan: &Plan, bands: u32) -> Result<String> {
     let mut text = String::new();
     let (receivers, shadowed) = (plan.receivers, plan.shadowed_receivers);
     writeln!(text, "{scene}: {receivers} receivers, {shadowed} of them with something above")?;
-    writeln!(text, "{} channel(s), at most {} bounces\n", plan.channels, plan.bounces)?;
+    writeln!(text, "{} channel(s), about {} bounces\n", plan.channels, plan.bounces)?;
     writeln!(text, "{:<16} {:<8} {:>14} {:>14}  reason", "effect", "simulate", "rays", "bytes")?;
     plan.rows.iter().try_for_each(|row| write_row(&mut text, row))?;
     let (rays, bytes) = plan
         .rows
         .iter()
         .fold((0_u64, 0_u64), |(rays, bytes), row| (rays.saturating_add(row.rays), bytes.saturating_add(row.bytes)));
+    // What every bake has, whatever its effects: one channel of transfer.
+    let base = plan.receivers.saturating_mul(u64::from(bands * bands) * 4);
+    writeln!(text, "{:<16} {:<8} {:>14} {base:>14}  one channel of transfer for every receiver", "Transfer", "yes", 0)?;
+    let bytes = bytes.saturating_add(base);
     writeln!(text, "{:<16} {:<8} {rays:>14} {bytes:>14}", "together", "")?;
     Ok(text)
 }
