@@ -155,7 +155,7 @@ fn rows(facts: &Facts, settings: &Settings, d: &Decisions) -> Vec<PlanRow> {
         Quality::Rays(n) => f64::from(n),
         Quality::Error(e) => TYPICAL_RAYS * f64::from(0.01 / e).max(0.05),
     };
-    let traced = if forced(settings) { facts.receivers } else { facts.shadowed };
+    let traced = facts.shadowed;
     let visibility_rays = if d.visibility { (traced as f64 * per_receiver) as u64 } else { 0 };
     let coefficients = u64::from(settings.bands * settings.bands);
     let plane_bytes = facts.receivers * coefficients * 4;
