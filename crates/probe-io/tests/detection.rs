@@ -42,7 +42,9 @@ fn shapes_and_empty_parts_tell_the_layout() {
 
 #[test]
 fn shapes_and_empty_parts_tell_the_layout_can_fail() {
-    for (name, width, height) in [("full-square", 32, 32), ("full-tall", 12, 16), ("full-wide", 16, 12), ("full-odd", 30, 17)] {
+    for (name, width, height) in
+        [("full-square", 32, 32), ("full-tall", 12, 16), ("full-wide", 16, 12), ("full-odd", 30, 17)]
+    {
         let error = load(name, width, height, |_, _| 1.0).unwrap_err().to_string();
         assert!(error.contains("--layout") && error.contains(&format!("{width} x {height}")), "{error}");
     }
