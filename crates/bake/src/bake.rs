@@ -61,8 +61,7 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
         visibility: simulates(&plan, Effect::Visibility),
         hits: simulates(&plan, Effect::Interreflection),
     };
-    let baked = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)?;
-    Ok(baked)
+    Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)
 }
 
 /// The scene as it is baked; an empty one is refused.

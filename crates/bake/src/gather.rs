@@ -91,9 +91,7 @@ impl Worker {
 impl Gatherer<'_> {
     /// Gathers for one receiver: a pure function of the scene, the settings and the receiver's index.
     pub(crate) fn gather(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Gathered {
-        let above =
-            self.visibility && receiver.sound && self.world.tracer.anything_above(receiver.vertex, receiver.normal);
-        if !above {
+        if !(self.visibility && self.world.can_shadow(receiver)) {
             return self.unshadowed(receiver);
         }
         let origin = offset_origin(receiver.position, receiver.geometric_normal);
@@ -134,7 +132,7 @@ impl Gatherer<'_> {
 
     /// Doubles the rays until the estimate meets the error asked for, or the set is spent.
     fn trace_visibility(&self, origin: Vec3, set: &DirectionSet, frame: &Mat3, worker: &mut Worker) -> Seen {
-        rotate_directions(set, frame, 0, &mut worker.directions);
+        worker.directions.iter_mut().for_each(Vec::clear);
         worker.blocked.clear();
         let rule = self.rule();
         let mut progress = rule.start();
@@ -282,11 +280,10 @@ fn turned_frame(normal: Vec3, [cos, sin]: [f32; 2]) -> Mat3 {
     Mat3::from_cols(cos * x + sin * y, cos * y - sin * x, normal)
 }
 
-/// Fills world directions up to `end`, keeping those that are there; `end` 0 clears.
+/// Appends world directions up to `end` to those that are there.
 fn rotate_directions(set: &DirectionSet, frame: &Mat3, end: usize, world: &mut [Vec<f32>; 3]) {
     for (axis, out) in world.iter_mut().enumerate() {
-        let start = if end == 0 { 0 } else { out.len() };
-        out.truncate(start);
+        let start = out.len();
         let (a, b, c) = (frame.x_axis[axis], frame.y_axis[axis], frame.z_axis[axis]);
         let local = set.xs[start..end].iter().zip(&set.ys[start..end]).zip(&set.zs[start..end]);
         out.extend(local.map(|((x, y), z)| a * x + b * y + c * z));

@@ -16,8 +16,8 @@ const TYPICAL_RAYS: f64 = 700.0;
 
 /// Facts about the scene that decisions rest on.
 pub(crate) struct Facts {
-    pub(crate) receivers: u64,
-    pub(crate) shadowed: u64,
+    receivers: u64,
+    shadowed: u64,
     /// Mean diffuse albedo over the area of surfaces that block.
     mean_albedo: f32,
     colored: Vec<String>,
@@ -33,7 +33,7 @@ impl Facts {
     /// Looks at every material once and at every receiver through the tree.
     pub(crate) fn gather(scene: &Scene, world: &World<'_>, receivers: &Receivers) -> Self {
         let fronts = &receivers.list[..receivers.permanent];
-        let shadowed = fronts.par_iter().filter(|r| r.sound && world.tracer.anything_above(r.vertex, r.normal)).count();
+        let shadowed = fronts.par_iter().filter(|r| world.can_shadow(r)).count();
         let names = |test: &dyn Fn(&Material) -> bool| -> Vec<String> {
             scene.materials.iter().filter(|m| test(m)).map(|m| m.name.clone()).collect()
         };
@@ -69,12 +69,9 @@ fn mean_albedo(scene: &Scene, albedos: &[Albedo]) -> f32 {
         if !scene.materials[material].blocks_rays() {
             continue;
         }
-        for t in &mesh.triangles {
-            let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
-            let twice = f64::from((b - a).cross(c - a).length());
-            area += twice;
-            sum += twice * f64::from(albedos[material].mean);
-        }
+        let mesh_area: f64 = (0..mesh.triangles.len()).map(|t| mesh.area(t)).sum();
+        area += mesh_area;
+        sum += mesh_area * f64::from(albedos[material].mean);
     }
     if area > 0.0 { (sum / area) as f32 } else { 0.0 }
 }

@@ -1,11 +1,11 @@
 //! Splits large triangles, since a vertex is all that can hold a shadow.
 
-use crate::plan::Facts;
 use crate::receivers::Receivers;
 use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Refine, Settings};
 use glam::{Vec3, Vec4};
+use rayon::prelude::*;
 use scene::{Mesh, Scene};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -30,15 +30,10 @@ pub fn refine<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene
     let longest = match settings.refine {
         Refine::Off => return Ok(Cow::Borrowed(scene)),
         Refine::Edge(length) => length,
-        Refine::Auto => {
-            let receivers = Receivers::of(scene);
-            if Facts::gather(scene, &World::new(scene, false)?, &receivers).shadowed == 0 {
-                return Ok(Cow::Borrowed(scene));
-            }
-            even_edge(scene)
-        }
+        Refine::Auto => even_edge(scene),
     };
-    if !scene.meshes.iter().any(|mesh| has_longer(mesh, longest)) {
+    let even = !scene.meshes.iter().any(|mesh| has_longer(mesh, longest));
+    if even || settings.refine == Refine::Auto && !has_shadows(scene)? {
         return Ok(Cow::Borrowed(scene));
     }
     let mut refined = scene.clone();
@@ -46,6 +41,12 @@ pub fn refine<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene
         split(mesh, longest, &scene.name)?;
     }
     Ok(Cow::Owned(refined))
+}
+
+/// Whether anything in the scene can cast a shadow on a receiver.
+fn has_shadows(scene: &Scene) -> Result<bool, Error> {
+    let world = World::new(scene, false)?;
+    Ok(Receivers::of(scene).list.par_iter().any(|receiver| world.can_shadow(receiver)))
 }
 
 /// Longest edge of triangles spread evenly over all surfaces: half a square of that diagonal has the mean area; twice

@@ -1,6 +1,7 @@
 //! The scene as rays meet it: one list of triangles, and what a hit needs to know.
 
 use crate::Error;
+use crate::receivers::Receiver;
 use glam::Vec3;
 use raytrace::Tracer;
 use scene::{AlphaMode, Scene};
@@ -58,6 +59,11 @@ impl<'a> World<'a> {
         }
         world.tracer = Tracer::build(&positions, &world.corners, &masked);
         Ok(world)
+    }
+
+    /// Whether anything can stand between a receiver and the sky: above its tangent plane, exactly, through the tree.
+    pub(crate) fn can_shadow(&self, receiver: &Receiver) -> bool {
+        receiver.sound && self.tracer.anything_above(receiver.vertex, receiver.normal)
     }
 
     /// Whether the surface is there at a point of a masked triangle.
