@@ -15,7 +15,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("reference", &["sampling", "raytrace", "scene", "probe-io"]),
     ("render-cpu", &["sh-math", "raytrace", "probe-io", "coeff-io"]),
     ("render-wgpu", &["sh-math", "probe-io", "coeff-io"]),
-    ("relume", EVERYTHING),
+    ("study", EVERYTHING),
+    ("relume", WITH_STUDY),
 ];
 const EVERYTHING: &[&str] = &[
     "sh-math",
@@ -29,9 +30,22 @@ const EVERYTHING: &[&str] = &[
     "render-cpu",
     "render-wgpu",
 ];
+const WITH_STUDY: &[&str] = &[
+    "sh-math",
+    "sampling",
+    "raytrace",
+    "scene",
+    "probe-io",
+    "coeff-io",
+    "bake",
+    "reference",
+    "render-cpu",
+    "render-wgpu",
+    "study",
+];
 /// Crates of others that only some crates of the house may use.
 const RESERVED: &[(&str, &[&str])] =
-    &[("wgpu", &["render-wgpu"]), ("rayon", &["bake", "reference", "render-cpu", "relume"]), ("gltf", &["scene"])];
+    &[("wgpu", &["render-wgpu"]), ("rayon", &["bake", "reference", "render-cpu", "study", "relume"]), ("gltf", &["scene"])];
 
 /// What cargo is asked: the normal edges that start in the workspace, each line with its depth.
 pub(super) const QUESTION: [&str; 10] =
