@@ -9,6 +9,7 @@
 
 mod albedo;
 mod bake;
+mod bend;
 mod bundle;
 mod directions;
 mod error;
@@ -21,6 +22,7 @@ mod receivers;
 mod refine;
 mod repair;
 pub mod settings;
+mod split;
 mod world;
 
 pub use crate::bake::{ProgressFn, bake, plan};

@@ -1,13 +1,14 @@
 //! The scene as rays meet it: one list of triangles, and what a hit needs to know.
 
 use crate::Error;
+use crate::gather::NearPoint;
 use crate::receivers::Receiver;
 use glam::Vec3;
 use raytrace::Tracer;
 use scene::{AlphaMode, Scene};
 
-/// Bit 31 of a packed triangle says that its back was hit.
-const MAX_TRIANGLES: usize = (1 << 31) - 1;
+/// Bits 30 and 31 of a packed triangle say what was hit of it.
+const MAX_TRIANGLES: usize = (1 << 30) - 1;
 
 /// All surfaces that block light, flattened.
 pub(crate) struct World<'a> {
@@ -85,6 +86,36 @@ impl<'a> World<'a> {
     pub(crate) fn double_sided(&self, triangle: u32) -> bool {
         let (mesh, _) = self.locate(triangle);
         self.scene.materials[self.scene.meshes[mesh].material as usize].double_sided
+    }
+
+    /// Longest edge of a traced triangle, metres.
+    pub(crate) fn extent(&self, triangle: u32) -> f32 {
+        let [a, b, c] = self.points(triangle);
+        a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt()
+    }
+
+    /// A receiver at a point of a traced triangle, on one side.
+    pub(crate) fn receiver_at(&self, point: &NearPoint) -> Receiver {
+        let [a, b, c] = self.points(point.triangle);
+        let [u, v] = point.barycentrics;
+        let mix = |a: Vec3, b: Vec3, c: Vec3| a + u * (b - a) + v * (c - a);
+        let (mesh, local) = self.locate(point.triangle);
+        let mesh = &self.scene.meshes[mesh];
+        let shading = mesh.triangles[local].map(|v| mesh.normals.get(v as usize).copied());
+        let shading = match shading {
+            [Some(a), Some(b), Some(c)] => Some(mix(a, b, c)),
+            _ => None,
+        };
+        let at = mix(a, b, c);
+        let (receiver, _) = Receiver::new(at, shading, (b - a).cross(c - a), at);
+        if point.front { receiver } else { receiver.back() }
+    }
+
+    /// Corners of a traced triangle, world space.
+    pub(crate) fn points(&self, triangle: u32) -> [Vec3; 3] {
+        let (mesh, local) = self.locate(triangle);
+        let mesh = &self.scene.meshes[mesh];
+        mesh.triangles[local].map(|v| mesh.positions[v as usize])
     }
 
     fn locate(&self, triangle: u32) -> (usize, usize) {
