@@ -334,8 +334,11 @@ fn near_points(world: &World<'_>, hits: &[(Hit, Vec3)], worth: f32) -> Vec<NearP
         let mean = |of: fn(&Hit) -> f32| {
             group.iter().map(|(hit, reflected)| of(hit) * reflected.max_element()).sum::<f32>() / share
         };
-        let (hit, _) = group[0];
-        let barycentrics = [mean(|hit| hit.u), mean(|hit| hit.v)];
+        let (u, v) = (mean(|hit| hit.u), mean(|hit| hit.v));
+        let away = |hit: &Hit| (hit.u - u).powi(2) + (hit.v - v).powi(2);
+        // A point that was hit: the mean itself may lie inside a body that pierces the triangle.
+        let (hit, _) = group.iter().min_by(|(a, _), (b, _)| away(a).total_cmp(&away(b)))?;
+        let barycentrics = [hit.u, hit.v];
         (share > worth).then_some(NearPoint { triangle: hit.triangle, front: hit.front, barycentrics })
     };
     groups.filter_map(middle).collect()

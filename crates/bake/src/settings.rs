@@ -10,7 +10,7 @@ pub const MAX_RAYS: u32 = 1 << 16;
 /// Fewest rays of the stratified sequence: below, none may lie above the horizon.
 const MIN_STRATIFIED: u32 = 16;
 /// Most bounces.
-pub const MAX_BOUNCES: u32 = 1000;
+pub const MAX_BOUNCES: u32 = 10_000;
 
 /// What the command line bakes by default: 5 bands to a relative error of 1 %.
 #[must_use]
@@ -74,7 +74,7 @@ pub fn check(settings: &Settings) -> Result<(), Error> {
         return refuse("--refine", length.to_string(), "give a length above 0 in metres, auto or off");
     }
     match settings.bounces {
-        Bounces::Fixed(n) if n > MAX_BOUNCES => refuse("--bounces", n.to_string(), "use 0 to 1000, or auto"),
+        Bounces::Fixed(n) if n > MAX_BOUNCES => refuse("--bounces", n.to_string(), "use 0 to 10000, or auto"),
         Bounces::Fixed(_) | Bounces::Auto => Ok(()),
     }
 }
