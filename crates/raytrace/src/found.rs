@@ -1,0 +1,153 @@
+//! What each ray of a packet has found so far: the nearest triangle, and how far it is within bounds.
+
+use crate::block::Point;
+use crate::depth::Depth;
+use crate::lanes::Lanes;
+use crate::nearest::nearer;
+use crate::packet::{Many, WIDEST};
+use crate::ray::{Hit, Line};
+use crate::tree::Tree;
+use crate::walk::Solid;
+
+/// A triangle in the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub(crate) block: u32,
+    pub(crate) lane: u32,
+    /// Its number in the input.
+    pub(crate) triangle: u32,
+}
+
+impl Place {
+    const NOWHERE: Place = Place { block: 0, lane: 0, triangle: u32::MAX };
+
+    pub(crate) fn new(tree: &Tree, block: usize, lane: usize) -> Place {
+        Place { block: block as u32, lane: lane as u32, triangle: tree.blocks[block].triangles[lane] }
+    }
+}
+
+/// The nearest triangle of each ray. Its exact hit is worked out only where that decides between two, or at the end.
+#[derive(Debug)]
+pub(crate) struct Found {
+    /// The nearest hit lies between these; infinite where there is none, and minus infinity beyond the packet.
+    near: Many,
+    far: Many,
+    place: [Place; WIDEST],
+    /// Where it has been worked out.
+    hit: [Option<Hit>; WIDEST],
+    /// The largest of `far`: no ray of the packet looks beyond it.
+    pub(crate) reach: f32,
+}
+
+impl Found {
+    pub(crate) fn new() -> Found {
+        Found {
+            near: [f32::INFINITY; WIDEST],
+            far: [f32::INFINITY; WIDEST],
+            place: [Place::NOWHERE; WIDEST],
+            hit: [None; WIDEST],
+            reach: f32::INFINITY,
+        }
+    }
+
+    /// Makes ready for a packet of which the first `n` rays count.
+    pub(crate) fn start(&mut self, n: usize) {
+        *self = Found::new();
+        self.far[n..].fill(f32::NEG_INFINITY);
+    }
+
+    /// Beyond which parameter a ray has nothing to look for.
+    #[inline(always)]
+    pub(crate) fn far(&self, ray: usize) -> f32 {
+        self.far[ray]
+    }
+
+    /// The same for all rays.
+    #[inline(always)]
+    pub(crate) fn all_far<R: Lanes>(&self) -> R {
+        R::load(&self.far)
+    }
+
+    /// Follows a change of `far`.
+    #[inline(always)]
+    pub(crate) fn tighten<R: Lanes>(&mut self) {
+        self.reach = R::load(&self.far).highest();
+    }
+
+    /// Takes a triangle where it is surely the nearest so far. `maybe` and `sure` are the rays that may meet it
+    /// and those that do; returns the rays of which the exact meeting has to decide.
+    #[inline(always)]
+    pub(crate) fn offer<R: Lanes>(
+        &mut self,
+        place: Place,
+        (maybe, sure): (u32, u32),
+        depth: &Depth<R>,
+        direction: Point<R>,
+    ) -> u32 {
+        let (near, far) = depth.range(direction);
+        let (near_now, far_now) = (R::load(&self.near), R::load(&self.far));
+        let open = maybe & !near.above(far_now);
+        let nearest = open & sure & near_now.above(far);
+        if nearest != 0 {
+            R::choose(nearest, near, near_now).store(&mut self.near);
+            R::choose(nearest, far, far_now).store(&mut self.far);
+            let mut rays = nearest;
+            while rays != 0 {
+                self.put(rays.trailing_zeros() as usize, place);
+                rays &= rays - 1;
+            }
+        }
+        open & !nearest
+    }
+
+    /// [`Found::offer`] to one ray of a triangle that it surely meets between two parameters: whether that decided.
+    #[inline(always)]
+    pub(crate) fn offer_one(&mut self, ray: usize, place: Place, near: f32, far: f32) -> bool {
+        let nearest = far < self.near[ray];
+        if nearest {
+            (self.near[ray], self.far[ray]) = (near, far);
+            self.put(ray, place);
+        }
+        nearest
+    }
+
+    #[inline(always)]
+    fn put(&mut self, ray: usize, place: Place) {
+        self.place[ray] = place;
+        self.hit[ray] = None;
+    }
+
+    /// Decides exactly whether a triangle is nearer to a ray than what it has found, or as near and of a smaller number.
+    #[inline(never)]
+    pub(crate) fn decide(&mut self, ray: usize, place: Place, line: &Line, tree: &Tree, solid: Solid<'_>) {
+        // Parts of one triangle are one.
+        if self.place[ray].triangle == place.triangle {
+            return;
+        }
+        let best = self.settle(ray, line, tree);
+        let block = &tree.blocks[place.block as usize];
+        if let Some(hit) = nearer(block, place.lane as usize, line, best.as_ref(), solid) {
+            self.place[ray] = place;
+            self.hit[ray] = Some(hit);
+        }
+        if let Some(hit) = self.hit[ray] {
+            (self.near[ray], self.far[ray]) = (hit.t, hit.t);
+        }
+    }
+
+    /// The triangle that a ray meets first, and where.
+    #[inline(always)]
+    pub(crate) fn settle(&mut self, ray: usize, line: &Line, tree: &Tree) -> Option<Hit> {
+        let place = self.place[ray];
+        if self.hit[ray].is_none() && place != Place::NOWHERE {
+            let block = &tree.blocks[place.block as usize];
+            self.hit[ray] = nearer(block, place.lane as usize, line, None, &|_, _, _| true);
+        }
+        self.hit[ray]
+    }
+
+    /// Where that triangle is in the tree; meaningful where there is a hit.
+    pub(crate) fn place(&self, ray: usize) -> Place {
+        self.place[ray]
+    }
+}
