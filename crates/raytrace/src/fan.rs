@@ -134,7 +134,7 @@ impl Job for OccludedFan<'_> {
 fn strangers(tree: &Tree, directions: &Directions<'_>, group: &Group, solid: Solid<'_>, scratch: &mut Scratch) -> u32 {
     let mut stopped = 0;
     for i in (0..WIDEST).filter(|i| group.alive >> i & 1 == 1) {
-        if let Some(line) = Line::new(&directions.ray(group.members[i])) {
+        if let Some(line) = Line::new(&directions.ray(group.first + i)) {
             let walker = Walker::new(tree, line);
             stopped |= u32::from(alone::<Portable>(tree, &walker, Child::node(0), solid, 0, scratch)) << i;
         }

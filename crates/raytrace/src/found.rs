@@ -139,11 +139,17 @@ impl Found {
     #[inline(always)]
     pub(crate) fn settle(&mut self, ray: usize, line: &Line, tree: &Tree) -> Option<Hit> {
         let place = self.place[ray];
-        if self.hit[ray].is_none() && place != Place::NOWHERE {
+        if self.is_open(ray) {
             let block = &tree.blocks[place.block as usize];
             self.hit[ray] = nearer(block, place.lane as usize, line, None, &|_, _, _| true);
         }
         self.hit[ray]
+    }
+
+    /// Whether a ray has a triangle of which the exact hit has not been worked out.
+    #[inline(always)]
+    pub(crate) fn is_open(&self, ray: usize) -> bool {
+        self.hit[ray].is_none() && self.place[ray] != Place::NOWHERE
     }
 
     /// Where that triangle is in the tree; meaningful where there is a hit.

@@ -26,7 +26,9 @@ impl Directions<'_> {
 #[derive(Debug)]
 pub(crate) struct Group {
     pub(crate) directions: [Many; 3],
-    /// Places in the list.
+    /// Place of the first in the list.
+    pub(crate) first: usize,
+    /// Places of all in the list, where they are no neighbours.
     pub(crate) members: [usize; WIDEST],
     /// One bit for each member.
     pub(crate) alive: u32,
@@ -34,7 +36,7 @@ pub(crate) struct Group {
 
 impl Group {
     pub(crate) fn new() -> Group {
-        Group { directions: [[1.0; WIDEST]; 3], members: [0; WIDEST], alive: 0 }
+        Group { directions: [[1.0; WIDEST]; 3], first: 0, members: [0; WIDEST], alive: 0 }
     }
 
     /// Fills the group in place with neighbours in the list: it is read at once, and a copy would wait for the writes.
@@ -49,7 +51,7 @@ impl Group {
                 row[..n].copy_from_slice(&each[first..]);
             }
         }
-        self.members = std::array::from_fn(|i| first + i);
+        self.first = first;
         self.alive = (1 << n) - 1;
     }
 
@@ -65,8 +67,8 @@ impl Group {
         if n == 0 {
             return;
         }
-        let first = self.members[0];
-        self.members[n..].fill(first);
+        self.first = self.members[0];
+        self.members[n..].fill(self.first);
         for (row, each) in self.directions.iter_mut().zip(directions.each) {
             for (value, &place) in row[..R::N].iter_mut().zip(&self.members) {
                 *value = each[place];
@@ -85,7 +87,6 @@ impl Group {
     #[inline(always)]
     pub(crate) fn mark(&self, stopped: u32, blocked: &mut [u64]) {
         // Neighbours lie within one word: a group's width divides 64.
-        let first = self.members[0];
-        blocked[first / 64] |= u64::from(stopped) << (first % 64);
+        blocked[self.first / 64] |= u64::from(stopped) << (self.first % 64);
     }
 }

@@ -23,6 +23,7 @@ mod found;
 mod group;
 mod lanes;
 mod level;
+mod meetings;
 mod nearest;
 mod offset;
 mod packet;

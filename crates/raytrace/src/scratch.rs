@@ -1,6 +1,7 @@
 //! What a thread keeps between the fans it traces, so that nothing is allocated for each.
 
 use crate::found::Found;
+use crate::meetings::Meetings;
 use crate::sight::{Occluders, Sights};
 use crate::tree::Tree;
 use glam::Vec3;
@@ -9,6 +10,7 @@ use glam::Vec3;
 #[derive(Debug)]
 pub(crate) struct Scratch {
     pub(crate) found: Found,
+    pub(crate) meetings: Meetings,
     pub(crate) sights: Sights,
     pub(crate) occluders: Occluders,
     /// What packets have still to visit.
@@ -33,6 +35,7 @@ impl Scratch {
     pub(crate) fn new() -> Scratch {
         Scratch {
             found: Found::new(),
+            meetings: Meetings::new(),
             sights: Sights::new(),
             occluders: Occluders::new(),
             waiting: Vec::new(),

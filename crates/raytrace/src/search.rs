@@ -60,12 +60,21 @@ impl<R: Lanes> Search<'_, R> {
     /// Writes the hits to where the rays stand in the list, and remembers the triangles.
     #[inline(always)]
     pub(crate) fn hand_over(&self, group: &Group, scratch: &mut Scratch, hits: &mut [Option<Hit>]) {
-        let Scratch { found, sights, occluders, .. } = scratch;
-        let mut last = None;
-        for ray in 0..group.alive.count_ones() as usize {
-            let hit = found.settle(ray, &self.packet.line(ray, sights.origin), self.tree);
-            hits[group.members[ray]] = hit;
+        let Scratch { found, meetings, sights, occluders, .. } = scratch;
+        let n = group.alive.count_ones() as usize;
+        let origin = sights.origin;
+        for ray in (0..n).filter(|&ray| found.is_open(ray)) {
             let place = found.place(ray);
+            let block = &self.tree.blocks[place.block as usize];
+            meetings.put(ray, block.corners(place.lane as usize).map(|corner| corner - origin));
+        }
+        meetings.run(&group.directions, n);
+        let mut last = None;
+        for ray in 0..n {
+            let place = found.place(ray);
+            let quick = if found.is_open(ray) { meetings.hit(ray, place.triangle) } else { None };
+            let hit = quick.or_else(|| found.settle(ray, &self.packet.line(ray, origin), self.tree));
+            hits[group.members[ray]] = hit;
             let known = hit.is_none() || last == Some(place);
             if !known && self.tree.blocks[place.block as usize].masked >> place.lane & 1 == 0 {
                 occluders.keep(self.cell, place.block as usize, place.lane as usize);

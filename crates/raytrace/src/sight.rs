@@ -41,16 +41,22 @@ impl Sights {
     /// A block as the origin sees it.
     #[inline(always)]
     pub(crate) fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
-        let origin = self.origin;
-        self.edges.get(self.fan, block, || see::<F>(&tree.blocks[block], origin))
+        let (place, known) = self.edges.find(self.fan, block);
+        if !known {
+            self.edges.values[place] = see::<F>(&tree.blocks[block], self.origin);
+        }
+        &self.edges.values[place]
     }
 
     /// A block as the origin sees it, and how far off it is.
     #[inline(always)]
     pub(crate) fn view_in_depth<F: Lanes>(&mut self, tree: &Tree, block: usize) -> (&Seen, &Depths) {
-        let Sights { edges, depths, fan, origin } = self;
-        let seen = edges.get(*fan, block, || see::<F>(&tree.blocks[block], *origin));
-        (seen, depths.get(*fan, block, || Depths::of::<F>(&tree.blocks[block], *origin)))
+        let (place, known) = self.depths.find(self.fan, block);
+        if !known {
+            self.depths.values[place] = Depths::of::<F>(&tree.blocks[block], self.origin);
+        }
+        self.view::<F>(tree, block);
+        (&self.edges.values[place], &self.depths.values[place])
     }
 }
 
@@ -67,16 +73,14 @@ impl<T: Copy> Memory<T> {
         Memory { keys: vec![0; REMEMBERED], values: vec![nothing; REMEMBERED] }
     }
 
-    /// What is remembered of a block, or else what is now made of it.
+    /// The place of a block, and whether it holds what was worked out for it; whoever asks must put it there else.
     #[inline(always)]
-    fn get(&mut self, fan: u64, block: usize, make: impl FnOnce() -> T) -> &T {
+    fn find(&mut self, fan: u64, block: usize) -> (usize, bool) {
         let place = block % REMEMBERED;
         let key = fan << 32 | block as u64;
-        if self.keys[place] != key {
-            self.keys[place] = key;
-            self.values[place] = make();
-        }
-        &self.values[place]
+        let known = self.keys[place] == key;
+        self.keys[place] = key;
+        (place, known)
     }
 }
 
