@@ -3,11 +3,13 @@
 use crate::block::Point;
 use crate::depth::Depth;
 use crate::lanes::Lanes;
+use crate::meetings::Meetings;
 use crate::nearest::nearer;
 use crate::packet::{Many, WIDEST};
 use crate::ray::{Hit, Line};
 use crate::tree::Tree;
 use crate::walk::Solid;
+use glam::Vec3;
 
 /// A triangle in the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +35,9 @@ pub(crate) struct Found {
     near: Many,
     far: Many,
     place: [Place; WIDEST],
-    /// Where it has been worked out.
+    /// Another triangle about as near, where bounds do not tell the two apart.
+    rival: [Place; WIDEST],
+    /// The exact hit of the one, where it has been worked out.
     hit: [Option<Hit>; WIDEST],
     /// The largest of `far`: no ray of the packet looks beyond it.
     pub(crate) reach: f32,
@@ -45,6 +49,7 @@ impl Found {
             near: [f32::INFINITY; WIDEST],
             far: [f32::INFINITY; WIDEST],
             place: [Place::NOWHERE; WIDEST],
+            rival: [Place::NOWHERE; WIDEST],
             hit: [None; WIDEST],
             reach: f32::INFINITY,
         }
@@ -88,6 +93,13 @@ impl Found {
         let (near_now, far_now) = (R::load(&self.near), R::load(&self.far));
         let open = maybe & !near.above(far_now);
         let nearest = open & sure & near_now.above(far);
+        let mut doubt = open & !nearest;
+        if doubt != 0 {
+            let (mut nears, mut fars) = ([0.0; WIDEST], [0.0; WIDEST]);
+            near.store(&mut nears);
+            far.store(&mut fars);
+            doubt = self.compare(place, doubt, sure, &nears, &fars);
+        }
         if nearest != 0 {
             R::choose(nearest, near, near_now).store(&mut self.near);
             R::choose(nearest, far, far_now).store(&mut self.far);
@@ -97,7 +109,40 @@ impl Found {
                 rays &= rays - 1;
             }
         }
-        open & !nearest
+        doubt
+    }
+
+    /// Keeps a triangle as the rival of what rays have found where it surely meets them and they have none yet; returns
+    /// the rays of which the exact meeting has to decide.
+    #[inline(always)]
+    fn compare(&mut self, place: Place, mut rays: u32, sure: u32, near: &Many, far: &Many) -> u32 {
+        let mut undecided = 0;
+        while rays != 0 {
+            let ray = rays.trailing_zeros() as usize;
+            rays &= rays - 1;
+            let decided =
+                self.knows(ray, place) || (sure >> ray & 1 == 1 && self.challenge(ray, place, near[ray], far[ray]));
+            undecided |= u32::from(!decided) << ray;
+        }
+        undecided
+    }
+
+    /// Whether a ray has the triangle already: parts of one triangle are one.
+    #[inline(always)]
+    fn knows(&self, ray: usize, place: Place) -> bool {
+        self.place[ray].triangle == place.triangle || self.rival[ray].triangle == place.triangle
+    }
+
+    /// Makes a triangle that a ray surely meets the rival of its nearest, where it has one and no rival.
+    #[inline(always)]
+    fn challenge(&mut self, ray: usize, place: Place, near: f32, far: f32) -> bool {
+        let free = self.is_open(ray) && self.rival[ray] == Place::NOWHERE;
+        if free {
+            self.rival[ray] = place;
+            self.near[ray] = self.near[ray].min(near);
+            self.far[ray] = self.far[ray].min(far);
+        }
+        free
     }
 
     /// [`Found::offer`] to one ray of a triangle that it surely meets between two parameters: whether that decided.
@@ -108,20 +153,20 @@ impl Found {
             (self.near[ray], self.far[ray]) = (near, far);
             self.put(ray, place);
         }
-        nearest
+        nearest || self.knows(ray, place) || self.challenge(ray, place, near, far)
     }
 
     #[inline(always)]
     fn put(&mut self, ray: usize, place: Place) {
         self.place[ray] = place;
+        self.rival[ray] = Place::NOWHERE;
         self.hit[ray] = None;
     }
 
     /// Decides exactly whether a triangle is nearer to a ray than what it has found, or as near and of a smaller number.
     #[inline(never)]
     pub(crate) fn decide(&mut self, ray: usize, place: Place, line: &Line, tree: &Tree, solid: Solid<'_>) {
-        // Parts of one triangle are one.
-        if self.place[ray].triangle == place.triangle {
+        if self.knows(ray, place) {
             return;
         }
         let best = self.settle(ray, line, tree);
@@ -143,7 +188,51 @@ impl Found {
             let block = &tree.blocks[place.block as usize];
             self.hit[ray] = nearer(block, place.lane as usize, line, None, &|_, _, _| true);
         }
+        let rival = std::mem::replace(&mut self.rival[ray], Place::NOWHERE);
+        if rival != Place::NOWHERE {
+            let block = &tree.blocks[rival.block as usize];
+            if let Some(hit) = nearer(block, rival.lane as usize, line, self.hit[ray].as_ref(), &|_, _, _| true) {
+                self.place[ray] = rival;
+                self.hit[ray] = Some(hit);
+            }
+        }
         self.hit[ray]
+    }
+
+    /// Works out the hits of the first `n` rays side by side, but for those that ask for more than double precision.
+    #[inline(always)]
+    pub(crate) fn settle_all(
+        &mut self,
+        tree: &Tree,
+        origin: Vec3,
+        directions: &[Many; 3],
+        n: usize,
+        meetings: &mut Meetings,
+    ) {
+        let mut rivals = 0;
+        let mut open = 0;
+        for ray in 0..n {
+            open |= u32::from(self.is_open(ray)) << ray;
+            rivals |= u32::from(self.rival[ray] != Place::NOWHERE) << ray;
+        }
+        meetings.run(tree, origin, directions, &self.place, open);
+        for ray in rays_of(open) {
+            self.hit[ray] = meetings.hit(ray, self.place[ray].triangle);
+        }
+        if rivals == 0 {
+            return;
+        }
+        meetings.run(tree, origin, directions, &self.rival, rivals);
+        for ray in rays_of(rivals) {
+            let (Some(best), Some(hit)) = (self.hit[ray], meetings.hit(ray, self.rival[ray].triangle)) else {
+                continue;
+            };
+            let rival = std::mem::replace(&mut self.rival[ray], Place::NOWHERE);
+            if (hit.t, hit.triangle) < (best.t, best.triangle) {
+                self.hit[ray] = Some(hit);
+                self.place[ray] = rival;
+            }
+        }
     }
 
     /// Whether a ray has a triangle of which the exact hit has not been worked out.
@@ -156,4 +245,14 @@ impl Found {
     pub(crate) fn place(&self, ray: usize) -> Place {
         self.place[ray]
     }
+}
+
+/// The rays of a mask.
+#[inline(always)]
+pub(crate) fn rays_of(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let ray = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (ray < 32).then_some(ray)
+    })
 }

@@ -1,8 +1,10 @@
 //! The rays of a packet, each with the triangle that it surely meets: `meet` side by side, with the same results.
 
 use crate::exact::{Wide, is_certain, quick_volume};
+use crate::found::{Place, rays_of};
 use crate::packet::{Many, WIDEST};
 use crate::ray::Hit;
+use crate::tree::Tree;
 use glam::Vec3;
 
 /// Triangles, one for each ray, and where the rays meet them.
@@ -23,19 +25,30 @@ impl Meetings {
         Meetings { corners: [[0.0; WIDEST]; 9], t, u, v, sum: [0.0; WIDEST] }
     }
 
-    /// Gives a ray its triangle: the corners from the origin.
+    /// Works out where rays of a mask, of directions that are unit or nearly so, each meet the triangle at its place.
     #[inline(always)]
-    pub(crate) fn put(&mut self, ray: usize, corners: [Vec3; 3]) {
-        for (rows, corner) in self.corners.chunks_exact_mut(3).zip(corners) {
-            (rows[0][ray], rows[1][ray], rows[2][ray]) = (corner.x, corner.y, corner.z);
+    pub(crate) fn run(
+        &mut self,
+        tree: &Tree,
+        origin: Vec3,
+        directions: &[Many; 3],
+        places: &[Place; WIDEST],
+        rays: u32,
+    ) {
+        for ray in rays_of(rays) {
+            let corners = tree.blocks[places[ray].block as usize].corners(places[ray].lane as usize);
+            for (rows, corner) in self.corners.chunks_exact_mut(3).zip(corners) {
+                let from_origin = corner - origin;
+                (rows[0][ray], rows[1][ray], rows[2][ray]) = (from_origin.x, from_origin.y, from_origin.z);
+            }
         }
+        self.meet(directions);
     }
 
-    /// Works out where the first `n` rays, of directions that are unit or nearly so, meet their triangles.
+    /// A plain loop over structures of arrays, which compilers make wide by themselves.
     #[inline(always)]
-    pub(crate) fn run(&mut self, directions: &[Many; 3], n: usize) {
-        // A plain loop over structures of arrays, which compilers make wide by themselves.
-        for ray in 0..n.next_multiple_of(8).min(WIDEST) {
+    fn meet(&mut self, directions: &[Many; 3]) {
+        for ray in 0..WIDEST {
             let corner = |k: usize| std::array::from_fn(|axis| f64::from(self.corners[3 * k + axis][ray]));
             let [a, b, c]: [Wide; 3] = [corner(0), corner(1), corner(2)];
             let d: Wide = std::array::from_fn(|axis| f64::from(directions[axis][ray]));

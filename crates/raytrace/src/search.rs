@@ -63,17 +63,11 @@ impl<R: Lanes> Search<'_, R> {
         let Scratch { found, meetings, sights, occluders, .. } = scratch;
         let n = group.alive.count_ones() as usize;
         let origin = sights.origin;
-        for ray in (0..n).filter(|&ray| found.is_open(ray)) {
-            let place = found.place(ray);
-            let block = &self.tree.blocks[place.block as usize];
-            meetings.put(ray, block.corners(place.lane as usize).map(|corner| corner - origin));
-        }
-        meetings.run(&group.directions, n);
+        found.settle_all(self.tree, origin, &group.directions, n, meetings);
         let mut last = None;
         for ray in 0..n {
+            let hit = found.settle(ray, &self.packet.line(ray, origin), self.tree);
             let place = found.place(ray);
-            let quick = if found.is_open(ray) { meetings.hit(ray, place.triangle) } else { None };
-            let hit = quick.or_else(|| found.settle(ray, &self.packet.line(ray, origin), self.tree));
             hits[group.members[ray]] = hit;
             let known = hit.is_none() || last == Some(place);
             if !known && self.tree.blocks[place.block as usize].masked >> place.lane & 1 == 0 {
