@@ -93,33 +93,29 @@ impl Found {
         let (near_now, far_now) = (R::load(&self.near), R::load(&self.far));
         let open = maybe & !near.above(far_now);
         let nearest = open & sure & near_now.above(far);
-        let mut doubt = open & !nearest;
-        if doubt != 0 {
-            let (mut nears, mut fars) = ([0.0; WIDEST], [0.0; WIDEST]);
-            near.store(&mut nears);
-            far.store(&mut fars);
-            doubt = self.compare(place, doubt, sure, &nears, &fars);
-        }
         if nearest != 0 {
             R::choose(nearest, near, near_now).store(&mut self.near);
             R::choose(nearest, far, far_now).store(&mut self.far);
-            let mut rays = nearest;
-            while rays != 0 {
-                self.put(rays.trailing_zeros() as usize, place);
-                rays &= rays - 1;
+            for ray in rays_of(nearest) {
+                self.put(ray, place);
             }
         }
-        doubt
+        let doubt = open & !nearest;
+        if doubt == 0 {
+            return 0;
+        }
+        let (mut nears, mut fars) = ([0.0; WIDEST], [0.0; WIDEST]);
+        near.store(&mut nears);
+        far.store(&mut fars);
+        self.compare(place, doubt, sure, &nears, &fars)
     }
 
     /// Keeps a triangle as the rival of what rays have found where it surely meets them and they have none yet; returns
     /// the rays of which the exact meeting has to decide.
     #[inline(always)]
-    fn compare(&mut self, place: Place, mut rays: u32, sure: u32, near: &Many, far: &Many) -> u32 {
+    fn compare(&mut self, place: Place, rays: u32, sure: u32, near: &Many, far: &Many) -> u32 {
         let mut undecided = 0;
-        while rays != 0 {
-            let ray = rays.trailing_zeros() as usize;
-            rays &= rays - 1;
+        for ray in rays_of(rays) {
             let decided =
                 self.knows(ray, place) || (sure >> ray & 1 == 1 && self.challenge(ray, place, near[ray], far[ray]));
             undecided |= u32::from(!decided) << ray;
@@ -255,4 +251,50 @@ pub(crate) fn rays_of(mut mask: u32) -> impl Iterator<Item = usize> {
         mask &= mask.wrapping_sub(1);
         (ray < 32).then_some(ray)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::depth::Depths;
+    use crate::lanes::Row;
+    use crate::tree::{BLOCK, Block};
+
+    /// Four rays along z offered planes at two heights each, so that each triangle is the nearest of some rays and about
+    /// as near as another's for the rest; returns the bounds that the last ray is left with.
+    fn bounds_of_a_rival(heights: [f32; 2]) -> (f32, f32) {
+        let mut found = Found::new();
+        found.start(2);
+        let direction = [Row::<8>::splat(0.0), Row::splat(0.0), Row::splat(1.0)];
+        for (number, height) in heights.into_iter().enumerate() {
+            let mut block = Block { corners: [[0.0; BLOCK]; 9], triangles: [0; BLOCK], valid: 15, masked: 0 };
+            for (k, (x, y)) in [(-1.0, -1.0), (2.0, -1.0), (-1.0, 2.0)].into_iter().enumerate() {
+                (block.corners[3 * k], block.corners[3 * k + 1]) = ([x; BLOCK], [y; BLOCK]);
+                block.corners[3 * k + 2] = [height; BLOCK];
+            }
+            let depth = Depths::of::<Row<4>>(&block, Vec3::ZERO).one::<Row<8>>(0);
+            let place = Place { block: 0, lane: 0, triangle: number as u32 };
+            // The first triangle is there for the second ray only, the second for both.
+            let rays = if number == 0 { 2 } else { 3 };
+            assert_eq!(found.offer(place, (rays, rays), &depth, direction), 0, "bounds and rivals decide");
+        }
+        (found.near[1], found.far[1])
+    }
+
+    #[test]
+    fn a_rival_lowers_the_bounds_while_others_take_the_triangle() {
+        let (alone, _) = bounds_of_a_rival([1.0, 3.0]);
+        let (near, far) = bounds_of_a_rival([1.0, 1.0 - f32::EPSILON]);
+        assert!(near < alone, "the rival's lower bound counts: {near} against {alone}");
+        assert!(far >= 1.0 - f32::EPSILON, "and both lie within: {far}");
+    }
+
+    #[test]
+    fn lowering_can_fail() {
+        assert_eq!(
+            bounds_of_a_rival([1.0, 3.0]),
+            bounds_of_a_rival([1.0, 1.0 + 1.0e-2]),
+            "what is beyond changes nothing"
+        );
+    }
 }

@@ -46,6 +46,7 @@ impl Meetings {
     }
 
     /// A plain loop over structures of arrays, which compilers make wide by themselves.
+    #[expect(clippy::needless_range_loop, reason = "one index into nine rows and more")]
     #[inline(always)]
     fn meet(&mut self, directions: &[Many; 3]) {
         for ray in 0..WIDEST {

@@ -8,7 +8,7 @@ use crate::tree::Tree;
 use crate::walk::View;
 use glam::Vec3;
 
-/// Blocks remembered at once (48 KiB: most of what one receiver's rays touch again and again).
+/// Blocks remembered at once (48 KiB, and 24 KiB for depths: most of what one receiver's rays touch again and again).
 const REMEMBERED: usize = 256;
 
 /// Blocks prepared for the origin of a fan, by the low bits of their number.

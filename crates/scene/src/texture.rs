@@ -150,7 +150,8 @@ mod tests {
     /// Coordinates on and beside texels, in and far out of the picture, and some that are none.
     fn coordinates(size: u32) -> Vec<f32> {
         let steps = (-4 * size as i32..=4 * size as i32).map(|i| i as f32 * 0.37 / size as f32);
-        let odd = [0.0, -0.0, 0.5, 1.0, -1.0, 1.0e6, -1.0e9, 3.0e17, -2.0e18, 1.0e30, f32::MAX, f32::NAN, f32::INFINITY];
+        let odd =
+            [0.0, -0.0, 0.5, 1.0, -1.0, 1.0e6, -1.0e9, 3.0e17, -2.0e18, 1.0e30, f32::MAX, f32::NAN, f32::INFINITY];
         steps.chain(odd).collect()
     }
 
