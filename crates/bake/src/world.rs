@@ -16,10 +16,8 @@ pub(crate) struct World<'a> {
     pub(crate) tracer: Tracer,
     /// Of each traced triangle: its corners as vertices of the whole scene.
     pub(crate) corners: Vec<[u32; 3]>,
-    /// Of each traced triangle: its mesh.
-    mesh: Vec<u32>,
-    /// Of each traced triangle: its index within the mesh.
-    local: Vec<u32>,
+    /// Of each traced triangle: its mesh and its index within the mesh.
+    sources: Vec<[u32; 2]>,
     /// Whether any traced triangle has a mask.
     has_masks: bool,
 }
@@ -31,8 +29,7 @@ impl<'a> World<'a> {
             scene,
             tracer: Tracer::build(&[], &[], &[]),
             corners: Vec::new(),
-            mesh: Vec::new(),
-            local: Vec::new(),
+            sources: Vec::new(),
             has_masks: false,
         };
         let mut positions: Vec<Vec3> = Vec::new();
@@ -49,8 +46,7 @@ impl<'a> World<'a> {
             world.has_masks |= has_mask;
             for (t, corners) in mesh.triangles.iter().enumerate() {
                 world.corners.push(corners.map(|v| v + first));
-                world.mesh.push(m as u32);
-                world.local.push(t as u32);
+                world.sources.push([m as u32, t as u32]);
                 masked.push(has_mask);
             }
             check_count(scene, "triangles", world.corners.len(), MAX_TRIANGLES)?;
@@ -119,7 +115,8 @@ impl<'a> World<'a> {
     }
 
     fn locate(&self, triangle: u32) -> (usize, usize) {
-        (self.mesh[triangle as usize] as usize, self.local[triangle as usize] as usize)
+        let [mesh, local] = self.sources[triangle as usize];
+        (mesh as usize, local as usize)
     }
 }
 
