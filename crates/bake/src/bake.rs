@@ -1,16 +1,16 @@
 //! The bake: plan, first pass, backs, repair, bounces, file.
 
+use crate::account::account;
 use crate::bundle::{Baked, bundle};
 use crate::directions::DirectionBank;
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer, PackedHit};
 use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
-use crate::plan::{Facts, decide, simulates, tolerance};
+use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::{Progress, Stage};
 use crate::receivers::{NONE, Receivers};
 use crate::refine::refine;
 use crate::repair::{Finding, Repair};
-use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Quality, Settings};
 use scene::Scene;
@@ -27,13 +27,11 @@ const TYPICAL_HITS: u64 = 256;
 /// Decides which effects a scene calls for; bakes nothing.
 ///
 /// # Errors
-/// As [`bake`], before any ray is traced.
+/// As [`bake`]; no rays are traced but those of a small survey.
 pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings)?;
-    let receivers = Receivers::of(scene);
-    let world = World::new(scene, true)?;
-    Ok(decide(&Facts::gather(scene, &world, &receivers), settings))
+    Ok(prepare(scene, settings)?.plan)
 }
 
 /// Precomputes how every vertex of a scene answers to distant light.
@@ -47,11 +45,8 @@ pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
 pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<Prt, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings)?;
-    let receivers = Receivers::of(scene);
-    let masks = crate::plan::allows_masks(settings);
-    let world = World::new(scene, masks)?;
-    let plan = decide(&Facts::gather(scene, &world, &receivers), settings);
-    let bands = Bands::new(settings.bands).expect("checked with the settings");
+    let Prepared { world, receivers, plan, traced } = prepare(scene, settings)?;
+    let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
     let bank = DirectionBank::new(bands, settings);
     let gatherer = Gatherer {
         world: &world,
@@ -61,11 +56,13 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
         visibility: simulates(&plan, Effect::Visibility),
         hits: simulates(&plan, Effect::Interreflection),
     };
-    Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)
+    let mut prt = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)?;
+    prt.achieved.effects = account(scene, &prt, traced.len() as u64);
+    Ok(prt)
 }
 
 /// The scene as it is baked; an empty one is refused.
-fn refined<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene>, Error> {
+pub(crate) fn refined<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene>, Error> {
     if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
         return Err(Error::EmptyScene { scene: scene.name.clone() });
     }
@@ -201,7 +198,8 @@ impl<'a> Run<'a> {
     fn bounce(&mut self, chunks: &[Chunk], repair: &Repair, transfer: &mut Field) -> Result<(), Error> {
         let limit = match self.settings.bounces {
             Bounces::Fixed(n) => n,
-            Bounces::Auto => settings::MAX_BOUNCES,
+            // What comes after these cannot matter; they end sooner where measured to.
+            Bounces::Auto => self.plan.bounces,
         };
         let mut before = 1.0;
         for n in 1..=limit {

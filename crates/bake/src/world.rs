@@ -21,11 +21,20 @@ pub(crate) struct World<'a> {
     local: Vec<u32>,
     /// Whether any traced triangle has a mask.
     has_masks: bool,
+    /// Whether rays are traced even for receivers that nothing stands above.
+    pub(crate) trace_all: bool,
 }
 
 impl<'a> World<'a> {
-    /// Flattens the scene and builds the tree; `masks` says whether alpha masks let rays pass.
+    /// Flattens the scene and builds the tree; `masks` says whether alpha masks with holes let rays pass.
     pub(crate) fn new(scene: &'a Scene, masks: bool) -> Result<Self, Error> {
+        let holes = |m: usize| masks && crate::material::hole_share(scene, m) > 0.0;
+        let masked: Vec<bool> = (0..scene.materials.len()).map(holes).collect();
+        Self::with(scene, &|m| masked[m])
+    }
+
+    /// The same; `tested` says of which materials the alpha mask is tested.
+    pub(crate) fn with(scene: &'a Scene, tested: &dyn Fn(usize) -> bool) -> Result<Self, Error> {
         let mut world = Self {
             scene,
             tracer: Tracer::build(&[], &[], &[]),
@@ -33,6 +42,7 @@ impl<'a> World<'a> {
             mesh: Vec::new(),
             local: Vec::new(),
             has_masks: false,
+            trace_all: false,
         };
         let mut positions: Vec<Vec3> = Vec::new();
         let mut masked = Vec::new();
@@ -44,7 +54,7 @@ impl<'a> World<'a> {
             if !material.blocks_rays() {
                 continue;
             }
-            let has_mask = masks && material.is_masked();
+            let has_mask = tested(mesh.material as usize);
             world.has_masks |= has_mask;
             for (t, corners) in mesh.triangles.iter().enumerate() {
                 world.corners.push(corners.map(|v| v + first));
@@ -61,8 +71,13 @@ impl<'a> World<'a> {
         Ok(world)
     }
 
-    /// Whether anything can stand between a receiver and the sky: above its tangent plane, exactly, through the tree.
+    /// Whether rays are needed: where something can stand between a receiver and the sky, and what arrives shows.
     pub(crate) fn can_shadow(&self, receiver: &Receiver) -> bool {
+        !receiver.dark && (self.trace_all && receiver.sound || self.anything_above(receiver))
+    }
+
+    /// Whether anything stands above the tangent plane of a receiver, exactly, through the tree.
+    pub(crate) fn anything_above(&self, receiver: &Receiver) -> bool {
         receiver.sound && self.tracer.anything_above(receiver.vertex, receiver.normal)
     }
 
