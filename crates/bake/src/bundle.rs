@@ -173,6 +173,7 @@ impl KeptTextures<'_> {
         let (m, facts) = (&self.scene.materials[index], Facts::of(self.scene, index));
         let specular = simulates(plan, Effect::Specular) && facts.shines;
         let emission = simulates(plan, Effect::Emission) && facts.emission > 0.0;
+        let transmission = simulates(plan, Effect::Transmission);
         let normal_maps = specular && simulates(plan, Effect::NormalMaps);
         coeff_io::Material {
             name: m.name.clone(),
@@ -193,10 +194,11 @@ impl KeptTextures<'_> {
                     coeff_io::AlphaMode::Mask(cutoff)
                 }
                 AlphaMode::Mask(_) => coeff_io::AlphaMode::Opaque,
-                AlphaMode::Blend => coeff_io::AlphaMode::Blend,
+                AlphaMode::Blend if transmission => coeff_io::AlphaMode::Blend,
+                AlphaMode::Blend => coeff_io::AlphaMode::Opaque,
             },
             specular,
-            transmission: m.transmission,
+            transmission: if transmission { m.transmission } else { 0.0 },
         }
     }
 

@@ -1,8 +1,10 @@
 //! Facts about a scene that decisions rest on: materials, and what stands above which receiver.
 
 use crate::material;
+use crate::plan::allowed;
 use crate::receivers::Receivers;
 use crate::world::World;
+use coeff_io::{Effect, Settings};
 use rayon::prelude::*;
 use scene::{Scene, TextureSlot};
 use std::collections::BTreeSet;
@@ -65,10 +67,13 @@ pub(crate) struct Facts {
 }
 
 impl Facts {
-    /// Looks at every material; receivers are still to be added.
-    pub(crate) fn of_materials(scene: &Scene) -> Self {
-        let materials: Vec<material::Facts> =
+    /// Looks at every material; receivers are still to be added. Where the settings leave transmission out, all blocks.
+    pub(crate) fn of_materials(scene: &Scene, settings: &Settings) -> Self {
+        let mut materials: Vec<material::Facts> =
             (0..scene.materials.len()).map(|m| material::Facts::of(scene, m)).collect();
+        if !allowed(settings, Effect::Transmission) {
+            materials.iter_mut().for_each(|m| m.blocks |= m.transmits);
+        }
         let named = |test: &dyn Fn(&material::Facts) -> bool| {
             let pairs = scene.materials.iter().zip(&materials).filter(|(_, facts)| test(facts));
             Named { names: pairs.map(|(m, _)| m.name.clone()).collect() }
@@ -91,7 +96,7 @@ impl Facts {
             bumpy: named(&|m| m.bumpy && m.shines),
             idle_bumps: materials.iter().filter(|m| m.bumpy && !m.shines).count(),
             emissive: named(&|m| m.emission > 0.0),
-            transmissive: named(&|m| m.passes > 0.0),
+            transmissive: named(&|m| m.transmits),
             moving: Named { names: scene.moving.clone() },
             // Metal needs this texture with or without a reflection, to know where it scatters nothing.
             gloss_bytes: textures(&|m| {

@@ -17,6 +17,8 @@ pub(crate) struct Facts {
     pub(crate) albedo: Albedo,
     /// Whether rays stop at it.
     pub(crate) blocks: bool,
+    /// Whether it blends or transmits.
+    pub(crate) transmits: bool,
     /// Whether it has an alpha mask.
     pub(crate) masked: bool,
     /// Share of the mask's texels below the cutoff, at most; 0 only where no point of the surface can be missing.
@@ -48,6 +50,7 @@ impl Facts {
         Self {
             albedo,
             blocks: material.blocks_rays(),
+            transmits: !material.blocks_rays(),
             masked: material.is_masked(),
             holes: hole_share(scene, index),
             shines: metallic > METALLIC || material.roughness * gloss.smallest.y < SHINY,
@@ -62,6 +65,7 @@ impl Facts {
         Self {
             albedo,
             blocks: false,
+            transmits: false,
             masked: false,
             holes: 0.0,
             shines: false,

@@ -23,9 +23,9 @@ pub(crate) struct Prepared<'a> {
 /// Looks at a scene that is split already, and decides. No ray is traced but those of the survey.
 pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings) -> Result<Prepared<'a>, Error> {
     let mut receivers = Receivers::of(scene);
-    let mut facts = Facts::of_materials(scene);
+    let mut facts = Facts::of_materials(scene, settings);
     let holes = |m: usize| facts.materials[m].masked && (is_forced(settings) || facts.materials[m].holes > 0.0);
-    let mut world = World::with(scene, &|m| allows_masks(settings) && holes(m))?;
+    let mut world = World::with(scene, &|m| facts.materials[m].blocks, &|m| allows_masks(settings) && holes(m))?;
     facts.add_receivers(scene, &world, &receivers);
     world.trace_all = is_forced(settings);
     let specular = allowed(settings, Effect::Specular);
@@ -129,7 +129,7 @@ fn meshes(facts: &Facts, d: &Decisions) -> Vec<MeshPlan> {
             Effect::Specular => d.specular && material.shines,
             Effect::NormalMaps => d.normal_maps && material.shines && material.bumpy,
             Effect::Emission => d.emission && material.emission > 0.0,
-            Effect::Transmission => d.transmission && material.passes > 0.0,
+            Effect::Transmission => d.transmission && material.transmits,
             // Bands are the same for all, and motion is not simulated.
             Effect::Bands | Effect::Motion => false,
         };
@@ -217,7 +217,7 @@ mod tests {
     /// Against the sum of the series: with n bounces the rest is below the tolerance, with one fewer it is not.
     #[test]
     fn bounces_end_where_the_series_does() {
-        for a in [0.001, 0.1, 0.5, 0.8, 0.95] {
+        for a in [0.001f64, 0.1, 0.5, 0.8, 0.95] {
             let rest = |n: u32| (n + 1..5000).map(|k| a.powi(k as i32)).sum::<f64>();
             let n = geometric(a, 2.5e-3);
             assert!(rest(n) <= 2.5e-3, "{a}: {n} bounces leave {}", rest(n));

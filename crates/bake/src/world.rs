@@ -30,11 +30,15 @@ impl<'a> World<'a> {
     pub(crate) fn new(scene: &'a Scene, masks: bool) -> Result<Self, Error> {
         let holes = |m: usize| masks && crate::material::hole_share(scene, m) > 0.0;
         let masked: Vec<bool> = (0..scene.materials.len()).map(holes).collect();
-        Self::with(scene, &|m| masked[m])
+        Self::with(scene, &|m| scene.materials[m].blocks_rays(), &|m| masked[m])
     }
 
-    /// The same; `tested` says of which materials the alpha mask is tested.
-    pub(crate) fn with(scene: &'a Scene, tested: &dyn Fn(usize) -> bool) -> Result<Self, Error> {
+    /// The same; `blocks` says at which materials rays stop, `tested` of which the alpha mask is tested.
+    pub(crate) fn with(
+        scene: &'a Scene,
+        blocks: &dyn Fn(usize) -> bool,
+        tested: &dyn Fn(usize) -> bool,
+    ) -> Result<Self, Error> {
         let mut world = Self {
             scene,
             tracer: Tracer::build(&[], &[], &[]),
@@ -47,11 +51,10 @@ impl<'a> World<'a> {
         let mut positions: Vec<Vec3> = Vec::new();
         let mut masked = Vec::new();
         for (m, mesh) in scene.meshes.iter().enumerate() {
-            let material = &scene.materials[mesh.material as usize];
             let first = positions.len() as u32;
             positions.extend_from_slice(&mesh.positions);
             check_count(scene, "vertices", positions.len(), u32::MAX as usize / 2)?;
-            if !material.blocks_rays() {
+            if !blocks(mesh.material as usize) {
                 continue;
             }
             let has_mask = tested(mesh.material as usize);
@@ -78,7 +81,17 @@ impl<'a> World<'a> {
 
     /// Whether anything stands above the tangent plane of a receiver, exactly, through the tree.
     pub(crate) fn anything_above(&self, receiver: &Receiver) -> bool {
-        receiver.sound && self.tracer.anything_above(receiver.vertex, receiver.normal)
+        let Receiver { vertex, normal, .. } = *receiver;
+        receiver.sound && (self.tracer.anything_above(vertex, normal) || self.touches(receiver))
+    }
+
+    /// Whether a surface that faces the receiver lies between its tangent plane and itself. On a curved surface a receiver is drawn
+    /// in behind that plane, and where a body rests on the ground that is enough for the ground to hide all from its foot.
+    fn touches(&self, receiver: &Receiver) -> bool {
+        let way = receiver.vertex - receiver.position;
+        let depth = way.dot(receiver.normal);
+        // On a flat surface the way lies in the plane but for rounding, and a two-sided one would face its own back.
+        depth > 1e-5 * way.length() && self.tracer.anything_faced(receiver.vertex, receiver.normal, depth)
     }
 
     /// Whether the surface is there at a point of a masked triangle.
