@@ -170,7 +170,8 @@ fn bands_are_not_skipped_wrongly() {
     let scene = known("cornell-box");
     let sky = probe_io::builtin("sky").expect("built in");
     let white = Environment::constant([1.0; 3]);
-    let settings = |light: &Environment, band_choice| Settings { band_choice, light: norms(light), bands: 5, ..cheap() };
+    let settings =
+        |light: &Environment, band_choice| Settings { band_choice, light: norms(light), bands: 5, ..cheap() };
     let full = baked(&scene, &settings(&white, BandChoice::Exactly));
     let few = baked(&scene, &settings(&white, BandChoice::Needed));
     assert_eq!((full.transfer.bands, few.transfer.bands), (5, 1), "a white light reaches one band");

@@ -25,7 +25,13 @@ fn cost(scene: &Scene, prt: &Prt, traced: u64, effect: Effect) -> EffectCost {
         Effect::Visibility => {
             let bytes = 4 * transfer.openness.len() as u64;
             let saved_rays = (receivers - traced) * least_rays(prt);
-            EffectCost { rays: achieved.visibility_rays, saved_rays, bytes, saved_bytes: 4 * receivers - bytes, ..nothing }
+            EffectCost {
+                rays: achieved.visibility_rays,
+                saved_rays,
+                bytes,
+                saved_bytes: 4 * receivers - bytes,
+                ..nothing
+            }
         }
         Effect::Interreflection => {
             let simulated = crate::plan::simulates(plan, effect);
@@ -42,7 +48,9 @@ fn cost(scene: &Scene, prt: &Prt, traced: u64, effect: Effect) -> EffectCost {
             let saved_bytes = channels * (plane(prt.settings.bands) - plane(transfer.bands));
             EffectCost { bytes: plane(transfer.bands), saved_bytes, ..nothing }
         }
-        Effect::Specular => of_textures(nothing, scene, prt, |m| m.metallic_roughness_texture, |m| m.metallic_roughness_texture),
+        Effect::Specular => {
+            of_textures(nothing, scene, prt, |m| m.metallic_roughness_texture, |m| m.metallic_roughness_texture)
+        }
         Effect::NormalMaps => {
             let maps = of_textures(nothing, scene, prt, |m| m.normal_texture, |m| m.normal_texture);
             let tangents = 16 * prt.geometry.tangents.len() as u64;

@@ -40,7 +40,10 @@ pub(crate) fn specular(table: &Table<'_>) -> PlanRow {
         stake,
         at_stake: match f.shiny.any() {
             true => format!("reflections missing: up to {} of the light, at normal incidence", percent(stake)),
-            false => format!("the blurred sheen of matt surfaces, about {} of the light, is left out of the model", percent(stake)),
+            false => format!(
+                "the blurred sheen of matt surfaces, about {} of the light, is left out of the model",
+                percent(stake)
+            ),
         },
     };
     let row = table.row(Effect::Specular, d.specular, &f.shiny, words);

@@ -44,6 +44,8 @@ pub(crate) struct Facts {
     pub(crate) receivers: u64,
     pub(crate) shadowed: u64,
     pub(crate) dark: u64,
+    /// Of each permanent receiver: whether something stands above it.
+    above: Vec<bool>,
     /// Diffuse albedo of surfaces that block: mean over their area, and largest.
     pub(crate) mean_albedo: f32,
     pub(crate) largest_albedo: f32,
@@ -86,6 +88,7 @@ impl Facts {
             receivers: 0,
             shadowed: 0,
             dark: 0,
+            above: Vec::new(),
             mean_albedo: mean_albedo(scene, &materials),
             largest_albedo: blocking().map(|m| m.albedo.largest).fold(0.0, f32::max),
             reflecting: named(&|m| m.blocks && m.albedo.largest > 0.0),
@@ -129,6 +132,12 @@ impl Facts {
         }
         self.receivers = receivers.permanent as u64;
         self.shadowed = count(0..receivers.permanent);
+        self.above = shadowed;
+    }
+
+    /// Whether something stands above a permanent receiver.
+    pub(crate) fn is_shadowed(&self, receiver: u32) -> bool {
+        self.above[receiver as usize]
     }
 
     /// Marks the receivers of surfaces that neither scatter nor mirror light: what reaches them shows nowhere.

@@ -33,8 +33,12 @@ pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings) -> Result<Prepa
     if !is_forced(settings) {
         facts.mark_dark(scene, &mut receivers, &shows_light);
     }
+    let needs_rays = |&r: &u32| {
+        let receiver = &receivers.list[r as usize];
+        !receiver.dark && (world.trace_all && receiver.sound || facts.is_shadowed(r))
+    };
     let traced: Vec<u32> = match allowed(settings, Effect::Visibility) {
-        true => (0..receivers.permanent as u32).filter(|&r| world.can_shadow(&receivers.list[r as usize])).collect(),
+        true => (0..receivers.permanent as u32).filter(needs_rays).collect(),
         false => Vec::new(),
     };
     let survey = survey(&world, &receivers.list, &traced, settings)?;
@@ -79,7 +83,7 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
         Bounces::Auto => most_bounces(facts.largest_albedo, tolerance).max(u32::from(forced)),
     };
     let interreflection = visibility && bounces > 0 && wanted(Effect::Interreflection, facts.largest_albedo > 0.0);
-    let gain = if interreflection { gain(bounced) } else { 1.0 };
+    let gain = if interreflection { gain(bounced[0]) } else { 1.0 };
     let left_out = bandwidth::left_out(&survey, &open_norms(bands(settings)), &settings.light, gain);
     let bands_needed = bandwidth::needed(&left_out, tolerance);
     let d = Decisions {
@@ -187,9 +191,9 @@ fn geometric(a: f64, tolerance: f64) -> u32 {
     (n.max(0.0) as u32).min(settings::MAX_BOUNCES)
 }
 
-/// By how much bounces add to the direct transfer, if every receiver were as covered as the worst of the survey.
-fn gain(bounced: [f32; 2]) -> f64 {
-    1.0 / (1.0 - f64::from(bounced[1].min(0.95)))
+/// By how much bounces are expected to add to the direct transfer, from mean albedo and coverage.
+fn gain(bounced: f32) -> f64 {
+    1.0 / (1.0 - f64::from(bounced.min(0.95)))
 }
 
 /// The bands asked for.

@@ -78,7 +78,11 @@ impl Table<'_> {
             },
             reason: match f.shadowed {
                 0 => format!("nothing stands above any of the {} receivers", f.receivers),
-                n => format!("something stands above {n} of {} receivers{dark}; the others have a closed form", f.receivers),
+                n if n == f.receivers => format!("something stands above each of the {n} receivers{dark}"),
+                n => {
+                    let all = f.receivers;
+                    format!("something stands above {n} of {all} receivers{dark}; the others have a closed form")
+                }
             },
             stake: most,
             at_stake: match (d.traced, self.survey.receivers) {
@@ -116,7 +120,11 @@ impl Table<'_> {
             stake: most,
             at_stake: match most {
                 0.0 => "nothing: no light is sent on".into(),
-                _ => format!("bounced light missing: up to {} of an open receiver's, {} on average", percent(most), percent(mean)),
+                _ => format!(
+                    "bounced light missing: up to {} of an open receiver's, {} on average",
+                    percent(most),
+                    percent(mean)
+                ),
             },
         };
         let row = self.row(Effect::Interreflection, d.interreflection, &f.reflecting, words);
@@ -151,8 +159,12 @@ impl Table<'_> {
         );
         match (d.interreflection, d.bounces) {
             (false, _) => format!("{albedo}: all bounces together stay below the tolerance"),
-            (true, crate::settings::MAX_BOUNCES) => format!("{albedo}; no bound, bounces end where they are measured to"),
-            (true, n) => format!("{albedo}; more than {n} bounces cannot matter, and they end sooner where measured to"),
+            (true, crate::settings::MAX_BOUNCES) => {
+                format!("{albedo}; no bound, bounces end where they are measured to")
+            }
+            (true, n) => {
+                format!("{albedo}; more than {n} bounces cannot matter, and they end sooner where measured to")
+            }
         }
     }
 
@@ -199,7 +211,7 @@ impl Table<'_> {
                     percent(few as f32)
                 ),
                 n => format!(
-                    "without band {} {} {under} would be missing, more than the tolerance of {tolerance}",
+                    "without band {}, {} {under} would be missing, more than the tolerance of {tolerance}",
                     n - 1,
                     percent(without_last as f32)
                 ),

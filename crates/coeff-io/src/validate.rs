@@ -243,7 +243,9 @@ impl Check<'_> {
         let numbers = plan.rows.iter().map(|row| &row.stake).chain(&survey.coverage).chain(&survey.band_norms);
         self.header(numbers.into_iter().all(is_amount), || "a fact of the plan is no number".into())?;
         let exists = |m: &crate::MeshPlan| (m.mesh as usize) < prt.meshes.len() && m.shadowed <= m.receivers;
-        self.header(plan.meshes.iter().all(exists), || "the plan has a mesh that does not exist or does not add up".into())
+        self.header(plan.meshes.iter().all(exists), || {
+            "the plan has a mesh that does not exist or does not add up".into()
+        })
     }
 }
 

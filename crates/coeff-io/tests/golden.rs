@@ -13,7 +13,10 @@ fn version_1_is_refused_by_name() {
     let error = Prt::from_bytes(VERSION_1).unwrap_err();
     let text = error.to_string();
     assert!(matches!(error, Error::Unsupported(_)), "{text}");
-    assert!(text.contains("version 1") && text.contains("version 2") && text.contains("bake the scene again"), "{text}");
+    assert!(
+        text.contains("version 1") && text.contains("version 2") && text.contains("bake the scene again"),
+        "{text}"
+    );
 }
 
 /// A change here is a change of the format: it needs a new version number, not new bytes.

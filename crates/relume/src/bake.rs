@@ -1,8 +1,8 @@
 //! `relume bake`: a scene becomes a `.prt` file.
 
 use crate::console::Console;
-use crate::settings::BakeOptions;
 use crate::light_facts::LightFacts;
+use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{interrupt, output};

@@ -55,7 +55,10 @@ impl LightFacts {
     pub(crate) fn text(&self, bands: u32) -> String {
         let held: f64 = self.share.iter().take(bands as usize).sum();
         let (name, lamps, measured) = (&self.name, self.lamps, self.share.len());
-        format!("{name}: {lamps} lamp(s); {bands} bands hold {:.1} % of the power in the first {measured}", 100.0 * held)
+        format!(
+            "{name}: {lamps} lamp(s); {bands} bands hold {:.1} % of the power in the first {measured}",
+            100.0 * held
+        )
     }
 }
 

@@ -29,8 +29,7 @@ const COLUMNS: Columns = Columns(&[
     (8, Side::Right),
     (28, Side::Left),
 ]);
-const MESH_COLUMNS: Columns =
-    Columns(&[(30, Side::Left), (10, Side::Right), (10, Side::Right), (62, Side::Left)]);
+const MESH_COLUMNS: Columns = Columns(&[(30, Side::Left), (10, Side::Right), (10, Side::Right), (62, Side::Left)]);
 /// Blanks before the reason of a row.
 const INDENT: usize = 17;
 
@@ -113,7 +112,15 @@ fn as_text(scene: &str, price: &Price) -> String {
         plan.receivers, plan.shadowed_receivers, plan.bands, plan.channels, plan.expected_bounces
     );
     let mut text = wrap(&head, COLUMNS.width()).join("\n") + "\n\n";
-    text.push_str(&COLUMNS.row(&["effect", "called for by", "decision", "rays", "time", "bytes", "if that were wrong"]));
+    text.push_str(&COLUMNS.row(&[
+        "effect",
+        "called for by",
+        "decision",
+        "rays",
+        "time",
+        "bytes",
+        "if that were wrong",
+    ]));
     text.push_str(&"-".repeat(COLUMNS.width()));
     text.push('\n');
     for row in &plan.rows {

@@ -125,7 +125,9 @@ fn bands(text: &str) -> Result<BandsOption, String> {
     let number = |text: &str| text.parse().map_err(|_| "give a number, auto or auto:MAX".to_owned());
     match text.strip_prefix("auto") {
         Some("") => Ok(BandsOption { choice: BandChoice::Needed, ..BandsOption::standard() }),
-        Some(most) => Ok(BandsOption { count: number(most.strip_prefix(':').unwrap_or(""))?, choice: BandChoice::Needed }),
+        Some(most) => {
+            Ok(BandsOption { count: number(most.strip_prefix(':').unwrap_or(""))?, choice: BandChoice::Needed })
+        }
         None => Ok(BandsOption { count: number(text)?, choice: BandChoice::Exactly }),
     }
 }

@@ -51,7 +51,9 @@ fn a_bake_tells_what_it_holds() {
 fn bands_that_the_light_cannot_show_are_left_out() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    for (bands, light, expected) in [("auto", "builtin:white", 1), ("5", "builtin:white", 5), ("auto:4", "builtin:sky", 3)] {
+    for (bands, light, expected) in
+        [("auto", "builtin:white", 1), ("5", "builtin:white", 5), ("auto:4", "builtin:sky", 3)]
+    {
         succeed(folder, &["bake", "builtin:plane", "-o", "a.prt", "--bands", bands, "--probe", light]);
         let seen = json(folder, &["inspect", "a.prt", "--json"]);
         assert_eq!(seen["header"]["bands"], expected, "--bands {bands} under {light}");

@@ -3,8 +3,8 @@
 //! Its transfer is the unshadowed closed form, tinted and darkened by formula, so that nothing has to be traced.
 
 use coeff_io::{
-    Achieved, AlphaMode, BandChoice, Bounces, Camera, Effects, Material, Mesh, Plan, Prt, Quality, Refine, Sampler, Settings,
-    Texture, TextureSlot, Transfer, Wrap,
+    Achieved, AlphaMode, BandChoice, Bounces, Camera, Effects, Material, Mesh, Plan, Prt, Quality, Refine, Sampler,
+    Settings, Texture, TextureSlot, Transfer, Wrap,
 };
 use glam::{Quat, Vec3};
 use probe_io::{Environment, Lamp};
