@@ -47,7 +47,9 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
     let scene = &*refined(scene, settings)?;
     let Prepared { world, receivers, plan, traced } = prepare(scene, settings)?;
     let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
-    let bank = DirectionBank::new(bands, settings);
+    // Where nothing is traced no directions are needed: the smallest set stands in.
+    let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };
+    let bank = DirectionBank::new(bands, &Settings { quality, ..settings.clone() });
     let gatherer = Gatherer {
         world: &world,
         bank: &bank,

@@ -103,7 +103,11 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
         bands_needed,
         left_out,
         bounces: if interreflection { bounces } else { 0 },
-        expected_bounces: if interreflection { expected_bounces(settings.bounces, bounced[0], tolerance) } else { 0 },
+        expected_bounces: if interreflection {
+            expected_bounces(settings.bounces, facts.mean_albedo * survey.coverage[1], tolerance)
+        } else {
+            0
+        },
         bounced,
     };
     Plan {
@@ -171,7 +175,7 @@ fn most_bounces(albedo: f32, tolerance: f64) -> u32 {
     geometric(f64::from(albedo), tolerance)
 }
 
-/// The same for the mean albedo and coverage: what is expected, not a bound.
+/// The same for the mean albedo and the largest coverage, since the worst receiver decides: what is expected, not a bound.
 fn expected_bounces(asked: Bounces, bounced: f32, tolerance: f64) -> u32 {
     match asked {
         Bounces::Fixed(n) => n,

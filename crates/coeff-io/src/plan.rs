@@ -81,7 +81,7 @@ pub struct Plan {
     pub channels: u32,
     /// Most bounces that can change the result by more than the tolerance: a bound from the largest albedo.
     pub bounces: u32,
-    /// Bounces that are expected to, from the mean albedo and the coverage that the survey saw.
+    /// Bounces that are expected to, from the mean albedo and the largest coverage that the survey saw.
     pub expected_bounces: u32,
 }
 
