@@ -1,11 +1,12 @@
 //! The bake: plan, first pass, backs, repair, bounces, file.
 
+use crate::account::account;
 use crate::bundle::{Baked, bundle};
 use crate::directions::DirectionBank;
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer, NearPoint, PackedHit, Source};
 use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
-use crate::plan::{Facts, decide, simulates, tolerance};
+use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::{Progress, Stage};
 use crate::receivers::Receivers;
 use crate::refine::refine_watched;
@@ -26,18 +27,16 @@ pub type ProgressFn<'a> = &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync);
 const TYPICAL_HITS: u64 = 256;
 
 /// Tolerances that a near surface must send on to get a receiver of its own.
-const NEAR_WORTH: f32 = 8.0;
+pub(crate) const NEAR_WORTH: f32 = 8.0;
 
 /// Decides which effects a scene calls for; bakes nothing.
 ///
 /// # Errors
-/// As [`bake`], before any ray is traced.
+/// As [`bake`]; no rays are traced but those of a small survey.
 pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
-    let receivers = Receivers::of(scene);
-    let world = World::new(scene, true)?;
-    Ok(decide(&Facts::gather(scene, &world, &receivers), settings))
+    Ok(prepare(scene, settings)?.plan)
 }
 
 /// Precomputes how every vertex of a scene answers to distant light.
@@ -51,12 +50,11 @@ pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
 pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<Prt, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, progress)?;
-    let receivers = Receivers::of(scene);
-    let masks = crate::plan::allows_masks(settings);
-    let world = World::new(scene, masks)?;
-    let plan = decide(&Facts::gather(scene, &world, &receivers), settings);
-    let bands = Bands::new(settings.bands).expect("checked with the settings");
-    let bank = DirectionBank::new(bands, settings);
+    let Prepared { world, receivers, plan, traced } = prepare(scene, settings)?;
+    let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
+    // Where nothing is traced no directions are needed: the smallest set stands in.
+    let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };
+    let bank = DirectionBank::new(bands, &Settings { quality, ..settings.clone() });
     let gatherer = Gatherer {
         world: &world,
         bank: &bank,
@@ -67,11 +65,17 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
         permanent: receivers.permanent as u32,
         worth: NEAR_WORTH * tolerance(settings.quality),
     };
-    Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)
+    let mut prt = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)?;
+    prt.achieved.effects = account(scene, &prt, traced.len() as u64);
+    Ok(prt)
 }
 
 /// The scene as it is baked; an empty one is refused.
-fn refined<'a>(scene: &'a Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<Cow<'a, Scene>, Error> {
+pub(crate) fn refined<'a>(
+    scene: &'a Scene,
+    settings: &Settings,
+    progress: ProgressFn<'_>,
+) -> Result<Cow<'a, Scene>, Error> {
     if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
         return Err(Error::EmptyScene { scene: scene.name.clone() });
     }
@@ -149,6 +153,9 @@ impl<'a> Run<'a> {
             self.findings[..self.receivers.permanent].iter().map(|finding| finding.is_inside()).collect();
         self.achieved.repairs.inside = inside.iter().filter(|&&is| is).count() as u32;
         let moved = emerge(scene, self.gatherer.world, &self.receivers, &inside);
+        if moved.is_empty() {
+            return Ok(Vec::new());
+        }
         let ids = moved.iter().map(|&(id, _)| id).collect();
         for (id, position) in moved {
             self.receivers.list[id as usize].position = position;
@@ -213,7 +220,8 @@ impl<'a> Run<'a> {
     fn bounce(&mut self, chunks: &[Chunk], repair: &Repair, transfer: &mut Field) -> Result<(), Error> {
         let limit = match self.settings.bounces {
             Bounces::Fixed(n) => n,
-            Bounces::Auto => settings::MAX_BOUNCES,
+            // What comes after these cannot matter; they end sooner where measured to.
+            Bounces::Auto => self.plan.bounces,
         };
         let mut before = 1.0;
         for n in 1..=limit {

@@ -63,6 +63,13 @@ pub(crate) struct Chunk {
     seen: Option<SeenSurfaces>,
 }
 
+impl Chunk {
+    /// Receivers with what they were found to see.
+    pub(crate) fn of(ids: Vec<u32>, results: &[Gathered]) -> Self {
+        Self { ids, seen: Some(SeenSurfaces::of(results)) }
+    }
+}
+
 /// The surfaces that the receivers of a chunk see.
 struct SeenSurfaces {
     ends: Vec<u32>,

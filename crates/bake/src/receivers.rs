@@ -19,6 +19,8 @@ pub struct Receiver {
     pub geometric_normal: Vec3,
     /// Whether there is a normal at all; a receiver without one is repaired from its neighbours.
     pub sound: bool,
+    /// Whether its surface neither scatters nor mirrors light, so that what arrives shows nowhere; set by the plan.
+    pub dark: bool,
 }
 
 /// All receivers of a scene. Vertex `v` of the flattened scene is receiver `v`.
@@ -115,6 +117,7 @@ impl Receiver {
             normal,
             geometric_normal,
             sound: shading.is_some() || geometric.is_some(),
+            dark: false,
         };
         (receiver, replaced)
     }

@@ -33,7 +33,11 @@ fn nothing_is_lost_on_any_known_scene() {
                 .map(|(value, p)| if sealed(name, *p) { 1.0 } else { value })
                 .collect();
             let (error, at) = worst(&reached, 1.0);
-            assert!(error <= BOUND, "{name}, {sampler:?}, {bands} bands: receiver {at} at {:?} is off by {error}", prt.geometry.positions[at]);
+            assert!(
+                error <= BOUND,
+                "{name}, {sampler:?}, {bands} bands: receiver {at} at {:?} is off by {error}",
+                prt.geometry.positions[at]
+            );
         }
     }
 }

@@ -1,8 +1,9 @@
 //! `relume bake`: a scene becomes a `.prt` file.
 
 use crate::console::Console;
+use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
-use crate::source::SceneOptions;
+use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{interrupt, output};
 use anyhow::{Context, Result};
@@ -14,6 +15,7 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   relume bake builtin:atrium -o atrium.prt
   relume bake house.glb -o house.prt --bands 6 --error 0.005
+  relume bake atrium.glb -o atrium.prt --bands auto:8 --probe evening.hdr
   relume bake scan.obj -o scan.prt --rays 256 --bounces 0 --memory 2G
 
 Ctrl-C ends a bake; the file is written when all is done, never in part.";
@@ -27,10 +29,16 @@ pub(crate) struct Options {
     output: PathBuf,
     #[command(flatten)]
     bake: BakeOptions,
+    /// The light that the result is meant for: with --bands auto, bands that it cannot show are left out.
+    #[arg(long, value_name = "PROBE", value_parser = source::probe)]
+    probe: Option<ProbeSource>,
+    #[command(flatten)]
+    read: ReadOptions,
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
-    let settings = options.bake.settings()?;
+    let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
+    let settings = options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))?;
     output::check(&options.output)?;
     let scene = options.scene.load(console)?;
     interrupt::watch()?;
