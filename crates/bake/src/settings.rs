@@ -20,6 +20,7 @@ pub fn standard() -> Settings {
         band_choice: BandChoice::Exactly,
         light: Vec::new(),
         quality: Quality::Error(0.01),
+        time: None,
         bounces: Bounces::Auto,
         refine: Refine::Auto,
         effects: Effects::Auto,

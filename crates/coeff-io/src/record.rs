@@ -14,6 +14,8 @@ pub struct Settings {
     pub light: Vec<f32>,
     /// When to stop tracing.
     pub quality: Quality,
+    /// Seconds that were allowed, where the error asked for followed from them.
+    pub time: Option<f32>,
     /// How often light may bounce.
     pub bounces: Bounces,
     /// Whether large triangles are split before the bake.

@@ -48,7 +48,10 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         bail!("{}: damaged in {}: get the file again or bake anew", path.display(), damaged.join(", "));
     }
     // Sound bytes can still contradict each other.
-    coeff_io::Prt::read(path).with_context(about)?;
+    let prt = coeff_io::Prt::read(path).with_context(about)?;
+    if prt.achieved.error[2] > 0.0 && !options.json {
+        console.print(&format!("worst error {}\n", crate::bake::worst_place(&prt)))?;
+    }
     Ok(())
 }
 
@@ -129,7 +132,13 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
     row("transfer", format!("{} bands, {} channel(s)", header.bands, header.channels))?;
     row(
         "asked for",
-        format!("{:?}, bounces {:?}, effects {:?}", settings.quality, settings.bounces, settings.effects),
+        format!(
+            "{:?}{}, bounces {:?}, effects {:?}",
+            settings.quality,
+            settings.time.map_or(String::new(), |seconds| format!(" within {seconds} s")),
+            settings.bounces,
+            settings.effects
+        ),
     )?;
     row("sampler", format!("{:?}, seed {}, memory {} bytes", settings.sampler, settings.seed, settings.memory))?;
     let worst = achieved.worst_receiver;

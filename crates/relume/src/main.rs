@@ -19,6 +19,7 @@ mod reference;
 mod render;
 mod settings;
 mod source;
+mod timed;
 mod usage;
 
 use arguments::{Arguments, Command};

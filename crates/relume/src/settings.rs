@@ -18,6 +18,10 @@ pub(crate) struct BakeOptions {
     /// Relative error of each receiver's transfer to reach (0.01 where neither is given).
     #[arg(long, value_name = "E")]
     error: Option<f32>,
+    /// The least error within a time: seconds, or 30s, 5m, 2h. Bakes from coarse to fine; the file is there after the first, coarse
+    /// result and holds the finest one that was finished in time.
+    #[arg(long, value_name = "T", conflicts_with_all = ["error", "rays"], value_parser = seconds)]
+    time: Option<f32>,
     /// How often light may bounce: a number, or auto for until it changes nothing.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = bounces)]
     bounces: Bounces,
@@ -105,6 +109,7 @@ impl BakeOptions {
             band_choice: self.bands.choice,
             light: light.to_vec(),
             quality: self.rays.map(Quality::Rays).or(self.error.map(Quality::Error)).unwrap_or(standard.quality),
+            time: self.time,
             bounces: self.bounces,
             refine: self.refine,
             effects: self.effects.clone(),
@@ -166,6 +171,19 @@ fn effect(name: &str) -> Result<Effect, String> {
     }
 }
 
+fn seconds(text: &str) -> Result<f32, String> {
+    let (digits, unit) = match text.char_indices().next_back() {
+        Some((at, 's')) => (&text[..at], 1.0),
+        Some((at, 'm')) => (&text[..at], 60.0),
+        Some((at, 'h')) => (&text[..at], 3600.0),
+        _ => (text, 1.0),
+    };
+    let wrong = || "give a time above 0, such as 90, 90s, 5m or 2h".to_owned();
+    let number: f32 = digits.parse().map_err(|_| wrong())?;
+    let seconds = number * unit;
+    if seconds > 0.0 && seconds.is_finite() { Ok(seconds) } else { Err(wrong()) }
+}
+
 fn bytes(text: &str) -> Result<u64, String> {
     let (digits, unit) = match text.char_indices().next_back() {
         Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
@@ -186,6 +204,9 @@ mod tests {
         assert_eq!(bytes("4G"), Ok(4 << 30));
         assert_eq!(bytes("100"), Ok(100));
         assert!(bytes("G").is_err() && bytes("-1").is_err() && bytes("99999999999G").is_err());
+        assert_eq!(seconds("90"), Ok(90.0));
+        assert_eq!(seconds("1.5m"), Ok(90.0));
+        assert!(seconds("0").is_err() && seconds("-1s").is_err() && seconds("m").is_err() && seconds("infh").is_err());
         assert_eq!(bounces("2"), Ok(Bounces::Fixed(2)));
         assert!(bounces("many").is_err());
         assert_eq!(effects("color,masks"), Ok(Effects::Only(vec![Effect::Color, Effect::Masks])));

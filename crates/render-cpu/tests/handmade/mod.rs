@@ -53,6 +53,7 @@ pub(crate) fn empty() -> Prt {
             band_choice: BandChoice::Exactly,
             light: Vec::new(),
             quality: Quality::Rays(1),
+            time: None,
             bounces: Bounces::Fixed(0),
             effects: Effects::Auto,
             sampler: Sampler::OwenSobol,

@@ -68,6 +68,7 @@ fn empty(channels: u32) -> Prt {
             band_choice: BandChoice::Exactly,
             light: Vec::new(),
             quality: Quality::Rays(1),
+            time: None,
             bounces: Bounces::Fixed(0),
             effects: Effects::Auto,
             sampler: Sampler::OwenSobol,
