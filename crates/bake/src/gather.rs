@@ -196,7 +196,8 @@ impl Gatherer<'_> {
             match rule.look(&mut progress, step.end as u32, &seen.local) {
                 Verdict::Continue { .. } => {}
                 Verdict::Reached { error } | Verdict::Exhausted { error } => {
-                    seen.error = if error.is_finite() { error / self.bank.open_norm } else { 0.0 };
+                    seen.error =
+                        if error.is_finite() { error.max(self.resolution(step)) / self.bank.open_norm } else { 0.0 };
                     break;
                 }
             }
@@ -213,6 +214,13 @@ impl Gatherer<'_> {
             Quality::Rays(_) => 0.0,
         };
         Doubling { first: 0, last: u32::MAX, tolerance, confirmation: 2.0 }
+    }
+
+    /// Half of what a single ray changes: no estimate is below it, since where all rays of two looks met the same the change is
+    /// zero, however many more it would take to find the gap.
+    fn resolution(&self, step: &Step) -> f64 {
+        // The squares of the basis add up to n^2 / (4 pi) in every direction.
+        0.5 * (self.bands.coefficients() as f64 / (4.0 * std::f64::consts::PI)).sqrt() / step.samples
     }
 
     /// Adds to the sum over open directions what the sequence misses of the exact cosine lobe, in proportion to
