@@ -52,11 +52,19 @@ fn shown(value: f64) -> String {
         v if v.is_infinite() => "infinite".into(),
         v if (0.001..1000.0).contains(&v.abs()) => {
             let digits = (2 - v.abs().log10().floor() as i32).max(0) as usize;
-            let text = format!("{v:.digits$}");
-            if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+            trimmed(&format!("{v:.digits$}")).into()
         }
-        v => format!("{v:.2e}"),
+        v => {
+            let text = format!("{v:.2e}");
+            let (mantissa, exponent) = text.split_once('e').expect("the format has an exponent");
+            format!("{}e{exponent}", trimmed(mantissa))
+        }
     }
+}
+
+/// Without zeros at the end of a fraction.
+fn trimmed(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
 /// The larger value; not a number where either is none.
@@ -93,8 +101,8 @@ mod tests {
     #[test]
     fn row_shows_three_digits() {
         assert_eq!(SOUND.row(), "| t | b | 1 | 0.5 | n | not a number |");
-        let texts = [0.0, 12.345, 100.0, 123_456.0, 0.000_123].map(shown);
-        assert_eq!(texts, ["0", "12.3", "100", "1.23e5", "1.23e-4"]);
+        let texts = [0.0, 12.345, 100.0, 123_456.0, 0.000_1].map(shown);
+        assert_eq!(texts, ["0", "12.3", "100", "1.23e5", "1e-4"]);
     }
 
     #[test]

@@ -26,7 +26,10 @@ macro_rules! hard_cases {
     ($take:ident) => {
         $take! {
             evaluation { next_to_the_poles, degree_100_in_f32, degree_128, degree_1024, orthonormal_21_bands }
-            rotation { gimbal, half_turns, tiny_turns, degree_128, turned_directions, ten_thousand_turns, composition_and_inverse }
+            rotation {
+                gimbal, half_turns, tiny_turns, degree_128, turned_directions, ten_thousand_turns,
+                length_after_ten_thousand_turns, composition_and_inverse,
+            }
             ringing { bare_sun, energy_of_a_sun, many_suns }
             suns { sun_of_1e5, sun_of_1e6, files_keep_suns }
             furnace { hundred_bounces, clamped_cosine }
@@ -34,7 +37,7 @@ macro_rules! hard_cases {
             triangles { slivers, zero_area, coincident_faces, duplicated_vertices, single_triangle, empty_meshes }
             normals { inverted, not_a_number }
             walls { sealed_box, corners_of_a_box, paper_walls, thin_gap, buried_receivers }
-            terminator { twelve_sided_sphere }
+            terminator { twelve_sided_sphere, split_sphere }
             albedo { above_one, reported }
             probes { not_a_number, negative, one_pixel, behind_the_angular_map }
             ranges { transfer_in_8_bit, clipped_transfer, grazing_light }

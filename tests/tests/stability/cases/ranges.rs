@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 pub(crate) fn transfer_in_8_bit() -> Case {
     Case {
         title: "transfer of the Cornell box in 8 bits, radiance under the clear sky",
-        bound: "error over the brightest radiance: half a step, 1/510 of each coefficient's range, 25 of them at random",
+        bound: "error over the brightest radiance: half a step, 1/254 of each coefficient's largest, 25 of them at random",
         limit: 0.01,
         ours: || eight_bit_error(from_data),
         naive_method: "the constant in 0 to 1, all others within ±0.75 of that",
@@ -32,8 +32,8 @@ pub(crate) fn clipped_transfer() -> Case {
 pub(crate) fn grazing_light() -> Case {
     Case {
         title: "irradiance in the modified H-basis, lights at 0 to 90°, 8 bits",
-        bound: "error of a coefficient over the largest constant: half a step of the range of the data, 1/510 of 0.46",
-        limit: 0.46 / 255.0,
+        bound: "error of a coefficient over the largest constant: half a step, 1/254 of the largest coefficient, which is 0.57 of that constant",
+        limit: 0.57 / 254.0,
         ours: || grazing_error(|largest, _| largest),
         naive_method: "±0.75 of each light's constant",
         naive: || grazing_error(|_, constant| 0.75 * constant),

@@ -4,6 +4,7 @@ use super::Case;
 use super::baking::{quiet, radiance};
 use super::published::random_direction;
 use bake::settings;
+use coeff_io::{Refine, Settings};
 use glam::Vec3;
 use raytrace::{Ray, Tracer, offset_origin_on};
 use sampling::rng::Rng;
@@ -16,7 +17,22 @@ pub(crate) fn twelve_sided_sphere() -> Case {
         title: "12-sided sphere with smooth normals under 40 suns",
         bound: "share of receivers with n·l > 0.1 darker than 1 % of a facing one: none, as nothing stands above a convex body",
         limit: 0.0,
-        ours: dark_receivers,
+        ours: || dark_receivers(vec![ball()], &settings::standard()),
+        naive_method: "a shadow ray from each point of a facet",
+        naive: dark_points,
+    }
+}
+
+pub(crate) fn split_sphere() -> Case {
+    Case {
+        title: "the same sphere over a ground, split to edges of 0.15, 5 bands",
+        bound: "the same share: pieces see their own facet where their normal leans over it, but five bands reach past it",
+        limit: 0.0,
+        ours: || {
+            let mut ground = scene::builtin("plane").expect("builtin").meshes.remove(0);
+            ground.positions.iter_mut().for_each(|p| p.y = -1.0);
+            dark_receivers(vec![ball(), ground], &Settings { refine: Refine::Edge(0.15), ..settings::standard() })
+        },
         naive_method: "a shadow ray from each point of a facet",
         naive: dark_points,
     }
@@ -53,13 +69,16 @@ fn ball() -> Mesh {
     mesh
 }
 
-fn dark_receivers() -> f64 {
-    let scene = Scene { meshes: vec![ball()], materials: vec![Material::default()], ..Scene::default() };
-    let prt = quiet(&scene, &settings::standard());
+/// Share of the first mesh's lit receivers that stay dark under the suns that stand high enough to pass any other mesh.
+fn dark_receivers(meshes: Vec<Mesh>, settings: &Settings) -> f64 {
+    let lowest = if meshes.len() > 1 { 0.2 } else { -1.0 };
+    let scene = Scene { meshes, materials: vec![Material::default()], ..Scene::default() };
+    let prt = quiet(&scene, settings);
+    let own = prt.meshes[0].vertices as usize;
     let (mut lit, mut dark) = (0, 0);
-    for sun in suns() {
+    for sun in suns().into_iter().filter(|sun| sun.y > lowest) {
         let light = project(Bands::new(5).expect("in range"), [(sun.as_dvec3(), [std::f64::consts::PI; 3])]);
-        for (value, normal) in radiance(&prt, &light).into_iter().zip(&prt.geometry.normals) {
+        for (value, normal) in radiance(&prt, &light).into_iter().zip(&prt.geometry.normals).take(own) {
             if Vec3::from(*normal).dot(sun) > LIT {
                 lit += 1;
                 dark += u32::from(value < 0.01);
