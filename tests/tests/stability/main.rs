@@ -36,8 +36,15 @@ fn table_names_every_case() {
     let document = include_str!("../../../docs/stability.md");
     let rows: Vec<&str> = document.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
     let cells = cases::hard_cases!(lead_cells);
-    assert_eq!(rows.len(), cells.len(), "docs/stability.md: one row per case; print them with the example stability-table");
+    assert_eq!(
+        rows.len(),
+        cells.len(),
+        "docs/stability.md: one row per case; print them with the example stability-table"
+    );
     for (row, [start, naive]) in rows.iter().zip(&cells) {
-        assert!(row.starts_with(start) && row.contains(naive), "docs/stability.md: '{row}' is not of '{start}', '{naive}'");
+        assert!(
+            row.starts_with(start) && row.contains(naive),
+            "docs/stability.md: '{row}' is not of '{start}', '{naive}'"
+        );
     }
 }

@@ -89,14 +89,8 @@ pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    const SOUND: Case = Case {
-        title: "t",
-        bound: "b",
-        limit: 1.0,
-        ours: || 0.5,
-        naive_method: "n",
-        naive: || f64::NAN,
-    };
+    const SOUND: Case =
+        Case { title: "t", bound: "b", limit: 1.0, ours: || 0.5, naive_method: "n", naive: || f64::NAN };
 
     #[test]
     fn row_shows_three_digits() {

@@ -46,11 +46,13 @@ pub(crate) fn degree_1024() -> Case {
         title: "SH in f64 at degree 1024",
         bound: "error of Σ Y² = (2l+1)/4π over m, as a share of twice the bound of one Y times its size",
         limit: 1.0,
-        ours: || addition_error(|direction, l| {
-            let mut out = vec![0.0; (l + 1) * (l + 1)];
-            recurrence::evaluate(l + 1, direction.to_array(), &mut out);
-            out
-        }),
+        ours: || {
+            addition_error(|direction, l| {
+                let mut out = vec![0.0; (l + 1) * (l + 1)];
+                recurrence::evaluate(l + 1, direction.to_array(), &mut out);
+                out
+            })
+        },
         naive_method: "factorials in f64",
         naive: || addition_error(|direction, l| DOUBLE.evaluate(l + 1, direction)),
     }
@@ -110,9 +112,11 @@ fn pole_error(functions: impl Fn(Vec3) -> Vec<f64>) -> f64 {
     let share = |direction: Vec3| {
         let truth = by_angles(129, direction.as_dvec3().normalize());
         let values = functions(direction);
-        let shares = values.iter().zip(&truth).enumerate().map(|(i, (value, truth))| {
-            (value - truth).abs() / (f64::from(f32::EPSILON) * bound(i.isqrt()))
-        });
+        let shares = values
+            .iter()
+            .zip(&truth)
+            .enumerate()
+            .map(|(i, (value, truth))| (value - truth).abs() / (f64::from(f32::EPSILON) * bound(i.isqrt())));
         worst(shares)
     };
     worst(near_poles().into_iter().map(share))

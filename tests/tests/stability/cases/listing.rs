@@ -41,8 +41,8 @@ impl Listing {
 
     /// `sqrt((2l + 1) / (4 pi) (l - m)! / (l + m)!)`.
     fn norm(&self, l: i32, m: i32) -> f64 {
-        let ratio = (self.round)(f64::from(2 * l + 1) * self.factorial(l - m))
-            / (self.round)(4.0 * PI * self.factorial(l + m));
+        let ratio =
+            (self.round)(f64::from(2 * l + 1) * self.factorial(l - m)) / (self.round)(4.0 * PI * self.factorial(l + m));
         (self.round)(ratio.sqrt())
     }
 

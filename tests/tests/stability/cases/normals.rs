@@ -22,13 +22,15 @@ pub(crate) fn not_a_number() -> Case {
         title: "shading normals that are zero, infinite or not a number",
         bound: "change of the transfer of a plane, infinite where they are not counted",
         limit: 1e-7,
-        ours: || mended(|i, normal| match i % 12 {
-            0 => Vec3::NAN,
-            3 => Vec3::ZERO,
-            6 => Vec3::INFINITY,
-            9 => Vec3::new(f32::NAN, 1.0, 0.0),
-            _ => normal,
-        }),
+        ours: || {
+            mended(|i, normal| match i % 12 {
+                0 => Vec3::NAN,
+                3 => Vec3::ZERO,
+                6 => Vec3::INFINITY,
+                9 => Vec3::new(f32::NAN, 1.0, 0.0),
+                _ => normal,
+            })
+        },
         naive_method: "the normal over its length",
         naive: || taken_as_given(Vec3::ZERO / Vec3::ZERO.length()),
     }

@@ -13,15 +13,19 @@ pub(crate) fn not_a_number() -> Case {
         title: "probes with a pixel that is not a number or infinite",
         bound: "coefficients that are not finite, 25 in each of 3 files: the files are refused, and the pixel is named",
         limit: 0.0,
-        ours: || counted([f32::NAN, f32::INFINITY, f32::NEG_INFINITY], |path| {
-            let refused = Environment::load(path, &LoadOptions::lenient()).expect_err("no light").to_string();
-            if refused.contains("pixel (5, 2)") { 0 } else { 25 }
-        }),
+        ours: || {
+            counted([f32::NAN, f32::INFINITY, f32::NEG_INFINITY], |path| {
+                let refused = Environment::load(path, &LoadOptions::lenient()).expect_err("no light").to_string();
+                if refused.contains("pixel (5, 2)") { 0 } else { 25 }
+            })
+        },
         naive_method: "to project what the file holds",
-        naive: || counted([f32::NAN, f32::INFINITY, f32::NEG_INFINITY], |path| {
-            let light = project(bands(5), Environment::from_image("raw", raw(path)).samples());
-            light.values.as_flattened().iter().filter(|value| !value.is_finite()).count()
-        }),
+        naive: || {
+            counted([f32::NAN, f32::INFINITY, f32::NEG_INFINITY], |path| {
+                let light = project(bands(5), Environment::from_image("raw", raw(path)).samples());
+                light.values.as_flattened().iter().filter(|value| !value.is_finite()).count()
+            })
+        },
     }
 }
 
@@ -30,11 +34,13 @@ pub(crate) fn negative() -> Case {
         title: "probe with a pixel of -5",
         bound: "darkest radiance below 0 once it is clamped by choice; infinite where it is not refused or not told",
         limit: 0.0,
-        ours: || with_pixel(-5.0, |path| {
-            let strict = Environment::load(path, &LoadOptions::strict());
-            let (clamped, told) = Environment::load(path, &LoadOptions::lenient()).expect("clamped by choice");
-            if strict.is_ok() || told.is_empty() { f64::INFINITY } else { darkness(&clamped.image) }
-        }),
+        ours: || {
+            with_pixel(-5.0, |path| {
+                let strict = Environment::load(path, &LoadOptions::strict());
+                let (clamped, told) = Environment::load(path, &LoadOptions::lenient()).expect("clamped by choice");
+                if strict.is_ok() || told.is_empty() { f64::INFINITY } else { darkness(&clamped.image) }
+            })
+        },
         naive_method: "to take what the file holds",
         naive: || with_pixel(-5.0, |path| darkness(&raw(path))),
     }
@@ -47,11 +53,14 @@ pub(crate) fn one_pixel() -> Case {
         limit: 1e-4,
         ours: || worst(shapes().map(|shape| from_constant(&loaded(shape)))),
         naive_method: "one sample at the centre of each pixel",
-        naive: || worst(shapes().map(|shape| {
-            let texels: Vec<_> = loaded(shape).image.texels().collect();
-            let samples = texels.into_iter().map(|t| (t.direction, t.radiance.map(|r| f64::from(r) * t.solid_angle)));
-            error_of_constant(&project(bands(8), samples))
-        })),
+        naive: || {
+            worst(shapes().map(|shape| {
+                let texels: Vec<_> = loaded(shape).image.texels().collect();
+                let samples =
+                    texels.into_iter().map(|t| (t.direction, t.radiance.map(|r| f64::from(r) * t.solid_angle)));
+                error_of_constant(&project(bands(8), samples))
+            }))
+        },
     }
 }
 
@@ -60,9 +69,12 @@ pub(crate) fn behind_the_angular_map() -> Case {
         title: "angular map looked up straight back",
         bound: "error of the angle from forward over π, which the pixels hold: the rim's pixel is half a pixel of 64 off",
         limit: 1.0 / 32.0,
-        ours: || worst([Vec3::NEG_Z, Vec3::new(-0.0, 0.0, -1.0), Vec3::new(1e-30, 0.0, -1.0)].map(|d| {
-            (f64::from(ramp().radiance(d)[0]) - 1.0).abs()
-        })),
+        ours: || {
+            worst(
+                [Vec3::NEG_Z, Vec3::new(-0.0, 0.0, -1.0), Vec3::new(1e-30, 0.0, -1.0)]
+                    .map(|d| (f64::from(ramp().radiance(d)[0]) - 1.0).abs()),
+            )
+        },
         naive_method: "the listing: the centre where x² + y² = 0",
         naive: || {
             let centre = ramp().pixels[32 * 64 + 32][0];

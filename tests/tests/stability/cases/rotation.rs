@@ -100,9 +100,11 @@ pub(crate) fn composition_and_inverse() -> Case {
         limit: 1e-14,
         ours: || composition_error(|n, turn, values| Rotation::from_f64(bands(n), turn).apply(values)),
         naive_method: "Ivanic-Ruedenberg as printed: sqrt(1 - δ) in V for m < 0",
-        naive: || composition_error(|n, turn, values| {
-            apply(&matrices(n as usize, DMat3::from_quat(turn), Text::Printed), values);
-        }),
+        naive: || {
+            composition_error(|n, turn, values| {
+                apply(&matrices(n as usize, DMat3::from_quat(turn), Text::Printed), values);
+            })
+        },
     }
 }
 
@@ -124,15 +126,15 @@ fn random_turn(rng: &mut Rng) -> DQuat {
 /// Products of three turns, the middle one near 0 or π, with the rounding that such products carry.
 fn gimbals() -> Vec<DMat3> {
     let noise = DMat3::from_cols(DVec3::Z * 1e-17, DVec3::ZERO, DVec3::X * 1e-17);
-    let product = |beta: f64| {
-        DMat3::from_rotation_z(0.7) * DMat3::from_rotation_y(beta) * DMat3::from_rotation_z(-1.9) + noise
-    };
+    let product =
+        |beta: f64| DMat3::from_rotation_z(0.7) * DMat3::from_rotation_y(beta) * DMat3::from_rotation_z(-1.9) + noise;
     [0.0, 1e-17, 1e-12, 1e-9, 1e-5, PI - 1e-9, PI].map(product).to_vec()
 }
 
 fn about_axes(angles: &[f64]) -> Vec<DMat3> {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(1.0, 1.0, 0.0), DVec3::ONE, DVec3::new(2.0, -3.0, 6.0)];
-    let turns = axes.iter().flat_map(|axis| angles.iter().map(|&angle| DQuat::from_axis_angle(axis.normalize(), angle)));
+    let turns =
+        axes.iter().flat_map(|axis| angles.iter().map(|&angle| DQuat::from_axis_angle(axis.normalize(), angle)));
     turns.map(DMat3::from_quat).collect()
 }
 

@@ -11,7 +11,8 @@ use sampling::warp::{square_to_uniform_hemisphere, square_to_uniform_sphere};
 use sh_math::{Bands, project};
 use std::f64::consts::PI;
 
-const FIREFLIES: &str = "error of 256 directions over that of uniform ones: a tenth is asked for; importance leaves the sky's share";
+const FIREFLIES: &str =
+    "error of 256 directions over that of uniform ones: a tenth is asked for; importance leaves the sky's share";
 
 pub(crate) fn sun_of_1e5() -> Case {
     Case {

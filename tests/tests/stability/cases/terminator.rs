@@ -63,7 +63,8 @@ fn ball() -> Mesh {
     };
     for (i, j) in (0..rows).flat_map(|j| (0..around).map(move |i| (i, j))) {
         let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-        mesh.triangles.extend([[a, b, c], [a, c, d]].into_iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
+        mesh.triangles
+            .extend([[a, b, c], [a, c, d]].into_iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
     }
     mesh.normals = mesh.positions.clone();
     mesh

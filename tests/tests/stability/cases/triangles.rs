@@ -101,7 +101,8 @@ fn leaving(leaves: Leaves) -> f64 {
     let tracer = Tracer::build(&mesh.positions, &mesh.triangles, &[]);
     let mut rng = Rng::new(3, 0);
     let left = (0..5000).filter(|i| {
-        let corners = mesh.triangles[rng.next_u64() as usize % mesh.triangles.len()].map(|v| mesh.positions[v as usize]);
+        let corners =
+            mesh.triangles[rng.next_u64() as usize % mesh.triangles.len()].map(|v| mesh.positions[v as usize]);
         let target = match i % 3 {
             0 => random_direction(&mut rng),
             1 => corners[0],
@@ -208,11 +209,8 @@ fn split() -> Settings {
 /// Change of a scene beside empty meshes; infinite where empty meshes alone are baked.
 fn beside_nothing() -> f64 {
     let points = Mesh { positions: vec![Vec3::ONE; 5], normals: vec![Vec3::Y; 5], ..Mesh::default() };
-    let nothing = Scene {
-        meshes: vec![Mesh::default(), points],
-        materials: vec![Material::default()],
-        ..Scene::default()
-    };
+    let nothing =
+        Scene { meshes: vec![Mesh::default(), points], materials: vec![Material::default()], ..Scene::default() };
     let refused = bake::bake(&nothing, &settings::preview(), &|_| ControlFlow::Continue(()));
     if !matches!(refused, Err(Error::EmptyScene { .. })) {
         return f64::INFINITY;

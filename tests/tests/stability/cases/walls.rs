@@ -145,7 +145,8 @@ fn block_on_ground() -> Scene {
 
 /// How far the ground inside the block falls below the darkest vertex around it.
 fn shortfall(positions: &[[f32; 3]], shares: &[f64]) -> f64 {
-    let ground = || positions.iter().zip(shares).filter(|(p, _)| p[1] == 0.0).map(|(p, share)| (Vec3::from(*p).xz(), share));
+    let ground =
+        || positions.iter().zip(shares).filter(|(p, _)| p[1] == 0.0).map(|(p, share)| (Vec3::from(*p).xz(), share));
     let reach = |p: glam::Vec2| p.abs().max_element();
     let ring = ground().filter(|(p, _)| (0.45..0.55).contains(&reach(*p))).fold(1.0, |low, (_, &s)| f64::min(low, s));
     worst(ground().filter(|(p, _)| reach(*p) < 0.35).map(|(_, share)| (1.0 - share / ring).max(0.0)))
