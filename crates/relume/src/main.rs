@@ -2,6 +2,7 @@
 
 mod arguments;
 mod bake;
+mod columns;
 mod console;
 mod draw;
 mod export;
@@ -9,6 +10,7 @@ mod inspect;
 mod interrupt;
 mod lens;
 mod light;
+mod light_facts;
 mod list;
 mod output;
 mod picture;
@@ -17,6 +19,7 @@ mod reference;
 mod render;
 mod settings;
 mod source;
+mod timed;
 mod usage;
 
 use arguments::{Arguments, Command};
