@@ -1,6 +1,6 @@
-//! Prints how far a bake is from the path tracer: `agreement -- SCENE PROBE [RECEIVERS] [RAYS]`.
+//! Prints how far a bake is from the path tracer: `agreement -- SCENE PROBE [RECEIVERS] [RAYS] [all]`.
 //!
-//! One line for direct light, one for a single bounce, one for all bounces; the figures of `docs/comparison.md`.
+//! One line for direct light, one for a single bounce, one for all bounces (`all`: that line alone); the figures of `docs/comparison.md`.
 
 #![expect(clippy::print_stdout, reason = "an example that prints a table")]
 
@@ -17,10 +17,11 @@ use support::{BandLight, Subject, measure};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [scene_name, probe_name, ..] = &arguments[..] else {
-        return Err("give a scene and a probe: agreement -- SCENE PROBE [RECEIVERS] [RAYS]".into());
+        return Err("give a scene and a probe: agreement -- SCENE PROBE [RECEIVERS] [RAYS] [all]".into());
     };
     let count = arguments.get(2).map_or(Ok(100), |n| n.parse())?;
     let quality = match arguments.get(3) {
+        Some(word) if word == "all" => bake::settings::standard().quality,
         Some(rays) => Quality::Rays(rays.parse()?),
         None => bake::settings::standard().quality,
     };
@@ -35,7 +36,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let bands = Bands::new(bake::settings::standard().bands).ok_or("no such number of bands")?;
     let light = BandLight::new(&sh_math::project(bands, environment.samples()));
     println!("{scene_name} under {probe_name}: {} vertices", scene.vertex_count());
-    for (bounces, limit) in [(Bounces::Fixed(0), Some(0)), (Bounces::Fixed(1), Some(1)), (Bounces::Auto, None)] {
+    let rows = [(Bounces::Fixed(0), Some(0)), (Bounces::Fixed(1), Some(1)), (Bounces::Auto, None)];
+    let only_all = arguments.last().is_some_and(|last| last == "all");
+    for (bounces, limit) in rows.into_iter().skip(if only_all { 2 } else { 0 }) {
         let start = Instant::now();
         let subject = Subject::bake(scene.clone(), bounces, quality, count);
         let baked = start.elapsed().as_secs_f64();

@@ -12,6 +12,8 @@ const COLORED: f32 = 2e-3;
 pub(crate) struct Albedo {
     pub(crate) mean: f32,
     pub(crate) largest: f32,
+    /// Largest difference between two channels of the mean.
+    pub(crate) spread: f32,
     pub(crate) colored: bool,
 }
 
@@ -20,11 +22,11 @@ impl Albedo {
     pub(crate) fn of(scene: &Scene, index: usize) -> Self {
         let mut meshes = scene.meshes.iter().filter(|m| m.material as usize == index).peekable();
         if meshes.peek().is_none() {
-            return Self { mean: 0.0, largest: 0.0, colored: false };
+            return Self { mean: 0.0, largest: 0.0, spread: 0.0, colored: false };
         }
         let material = &scene.materials[index];
-        let texels = Colors::of_texture(scene, material.base_color_texture, srgb);
-        let metal = Colors::of_texture(scene, material.metallic_roughness_texture, linear);
+        let texels = Colors::srgb(scene, material.base_color_texture);
+        let metal = Colors::linear(scene, material.metallic_roughness_texture);
         let mut tints = Colors::default();
         for mesh in meshes {
             tints.add_all(mesh.colors.iter().map(|c| c.truncate()));
@@ -39,18 +41,20 @@ impl Albedo {
         Self {
             mean: mean.clamp(Vec3::ZERO, Vec3::ONE).element_sum() / 3.0,
             largest: largest.max_element().clamp(0.0, 1.0),
-            colored: is_colored(factor) || texels.colored || tints.colored,
+            spread: mean.max_element() - mean.min_element(),
+            // Coloured metal scatters nothing, so its colour is none of an albedo.
+            colored: largest.max_element() > 0.0 && (is_colored(factor) || texels.colored || tints.colored),
         }
     }
 }
 
 /// What a list of colours spans.
 #[derive(Debug, Clone, Copy)]
-struct Colors {
+pub(crate) struct Colors {
     sum: glam::DVec3,
     count: f64,
-    smallest: Vec3,
-    largest: Vec3,
+    pub(crate) smallest: Vec3,
+    pub(crate) largest: Vec3,
     colored: bool,
 }
 
@@ -62,6 +66,16 @@ impl Default for Colors {
 }
 
 impl Colors {
+    /// All texels of a colour, linear; white where there is no texture.
+    pub(crate) fn srgb(scene: &Scene, slot: Option<TextureSlot>) -> Self {
+        Self::of_texture(scene, slot, srgb)
+    }
+
+    /// All texels of numbers that are stored as they are; ones where there is no texture.
+    pub(crate) fn linear(scene: &Scene, slot: Option<TextureSlot>) -> Self {
+        Self::of_texture(scene, slot, linear)
+    }
+
     /// All texels; white where there is no texture.
     fn of_texture(scene: &Scene, slot: Option<TextureSlot>, decode: fn([u8; 4]) -> Vec3) -> Self {
         let mut colors = Self::default();

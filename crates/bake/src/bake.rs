@@ -1,21 +1,23 @@
 //! The bake: plan, first pass, backs, repair, bounces, file.
 
+use crate::account::account;
 use crate::bundle::{Baked, bundle};
 use crate::directions::DirectionBank;
 use crate::field::Field;
-use crate::gather::{Gathered, Gatherer, PackedHit};
+use crate::gather::{Gathered, Gatherer, NearPoint, PackedHit, Source};
 use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
-use crate::plan::{Facts, decide, simulates, tolerance};
+use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::{Progress, Stage};
-use crate::receivers::{NONE, Receivers};
-use crate::refine::refine;
-use crate::repair::{Finding, Repair};
+use crate::receivers::Receivers;
+use crate::refine::refine_watched;
+use crate::repair::{Finding, Repair, emerge};
 use crate::world::World;
 use crate::{Error, settings};
-use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Quality, Settings};
+use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Quality, RepairCounts, Settings};
 use scene::Scene;
 use sh_math::Bands;
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 /// Called while a bake runs; returning `Break` cancels it.
@@ -24,16 +26,17 @@ pub type ProgressFn<'a> = &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync);
 /// Average blockers that a receiver is assumed to see when memory is estimated.
 const TYPICAL_HITS: u64 = 256;
 
+/// Tolerances that a near surface must send on to get a receiver of its own.
+pub(crate) const NEAR_WORTH: f32 = 8.0;
+
 /// Decides which effects a scene calls for; bakes nothing.
 ///
 /// # Errors
-/// As [`bake`], before any ray is traced.
+/// As [`bake`]; no rays are traced but those of a small survey.
 pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
     settings::check(settings)?;
-    let scene = &*refined(scene, settings)?;
-    let receivers = Receivers::of(scene);
-    let world = World::new(scene, true)?;
-    Ok(decide(&Facts::gather(scene, &world, &receivers), settings))
+    let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
+    Ok(prepare(scene, settings)?.plan)
 }
 
 /// Precomputes how every vertex of a scene answers to distant light.
@@ -46,13 +49,12 @@ pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
 /// `progress` asked to stop.
 pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<Prt, Error> {
     settings::check(settings)?;
-    let scene = &*refined(scene, settings)?;
-    let receivers = Receivers::of(scene);
-    let masks = crate::plan::allows_masks(settings);
-    let world = World::new(scene, masks)?;
-    let plan = decide(&Facts::gather(scene, &world, &receivers), settings);
-    let bands = Bands::new(settings.bands).expect("checked with the settings");
-    let bank = DirectionBank::new(bands, settings);
+    let scene = &*refined(scene, settings, progress)?;
+    let Prepared { world, receivers, plan, traced } = prepare(scene, settings)?;
+    let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
+    // Where nothing is traced no directions are needed: the smallest set stands in.
+    let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };
+    let bank = DirectionBank::new(bands, &Settings { quality, ..settings.clone() });
     let gatherer = Gatherer {
         world: &world,
         bank: &bank,
@@ -60,16 +62,24 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
         quality: settings.quality,
         visibility: simulates(&plan, Effect::Visibility),
         hits: simulates(&plan, Effect::Interreflection),
+        permanent: receivers.permanent as u32,
+        worth: NEAR_WORTH * tolerance(settings.quality),
     };
-    Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)
+    let mut prt = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)?;
+    prt.achieved.effects = account(scene, &prt, traced.len() as u64);
+    Ok(prt)
 }
 
 /// The scene as it is baked; an empty one is refused.
-fn refined<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene>, Error> {
+pub(crate) fn refined<'a>(
+    scene: &'a Scene,
+    settings: &Settings,
+    progress: ProgressFn<'_>,
+) -> Result<Cow<'a, Scene>, Error> {
     if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
         return Err(Error::EmptyScene { scene: scene.name.clone() });
     }
-    refine(scene, settings)
+    refine_watched(scene, settings, progress)
 }
 
 /// A bake under way.
@@ -114,15 +124,16 @@ impl<'a> Run<'a> {
     }
 
     fn finish(mut self, scene: &Scene) -> Result<Prt, Error> {
-        let all = 0..self.receivers.list.len() as u32;
+        let all = (0..self.receivers.list.len() as u32).collect();
         let keep = self.gatherer.hits && self.hits_fit();
         let mut chunks = self.first_pass(all, Stage::Visibility, keep)?;
+        chunks.extend(self.move_out(scene, keep)?);
         let repair = Repair::plan(scene, &self.receivers, &self.findings);
-        self.achieved.repairs = repair.counts;
+        self.achieved.repairs = RepairCounts { inside: self.achieved.repairs.inside, ..repair.counts };
         repair.apply(&mut self.last);
         let mut transfer = self.last.clone();
         if self.gatherer.hits {
-            chunks.extend(self.add_backs(keep)?);
+            chunks.extend(self.add_helpers(keep)?);
             transfer.grow(self.receivers.list.len());
             self.bounce(&chunks, &repair, &mut transfer)?;
         }
@@ -134,6 +145,22 @@ impl<'a> Run<'a> {
         self.summarise(&repair);
         let baked = Baked { transfer, openness, plan: self.plan, achieved: self.achieved };
         Ok(bundle(scene, &self.receivers, self.settings, baked))
+    }
+
+    /// Receivers inside bodies look again from where their surface comes out.
+    fn move_out(&mut self, scene: &Scene, keep: bool) -> Result<Vec<Chunk>, Error> {
+        let inside: Vec<bool> =
+            self.findings[..self.receivers.permanent].iter().map(|finding| finding.is_inside()).collect();
+        self.achieved.repairs.inside = inside.iter().filter(|&&is| is).count() as u32;
+        let moved = emerge(scene, self.gatherer.world, &self.receivers, &inside);
+        if moved.is_empty() {
+            return Ok(Vec::new());
+        }
+        let ids = moved.iter().map(|&(id, _)| id).collect();
+        for (id, position) in moved {
+            self.receivers.list[id as usize].position = position;
+        }
+        self.first_pass(ids, Stage::Helpers, keep)
     }
 
     /// Whether what all receivers see may be kept in memory; otherwise each bounce finds it again.
@@ -151,13 +178,11 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// What the given receivers see directly.
-    fn first_pass(&mut self, ids: std::ops::Range<u32>, stage: Stage, keep: bool) -> Result<Vec<Chunk>, Error> {
+    /// What the given receivers see directly; those that they want beside them are added to the list.
+    fn first_pass(&mut self, ids: Vec<u32>, stage: Stage, keep: bool) -> Result<Vec<Chunk>, Error> {
         let (last, findings, errors) = (&mut self.last, &mut self.findings, &mut self.errors);
         let achieved = &mut self.achieved;
-        let (receivers, corners) = (&self.receivers, &self.gatherer.world.corners);
-        let worth = tolerance(self.settings.quality);
-        let mut wanted_backs = std::collections::BTreeSet::new();
+        let mut wanted = Wanted { worth: tolerance(self.settings.quality), ..Wanted::default() };
         let mut sink = |id: u32, seen: &Gathered| {
             last.set_all(id, &seen.transfer);
             let finding = Finding { openness: seen.openness, inside_share: seen.inside_share };
@@ -165,18 +190,12 @@ impl<'a> Run<'a> {
             errors[id as usize] = seen.error;
             achieved.visibility_rays += seen.visibility_rays;
             achieved.bounce_rays += seen.bounce_rays;
-            if finding.is_inside() || back_share(&seen.hits) <= worth {
-                return;
-            }
-            for hit in seen.hits.iter().filter(|hit| hit.is_back()) {
-                let corners = corners[hit.triangle() as usize];
-                wanted_backs.extend(corners.into_iter().filter(|&v| receivers.back_of[v as usize] == NONE));
+            if !finding.is_inside() {
+                wanted.note(id, seen);
             }
         };
-        let chunks = gather_pass(&self.gatherer, receivers, ids, stage, keep, &self.monitor, &mut sink)?;
-        for vertex in wanted_backs {
-            self.receivers.add_back(vertex);
-        }
+        let chunks = gather_pass(&self.gatherer, &self.receivers, ids, stage, keep, &self.monitor, &mut sink)?;
+        wanted.add_to(&mut self.receivers, self.gatherer.world);
         let n = self.receivers.list.len();
         self.last.grow(n);
         self.findings.resize(n, Finding::default());
@@ -184,15 +203,15 @@ impl<'a> Run<'a> {
         Ok(chunks)
     }
 
-    /// Light reaches the backs of some surfaces: they become receivers for the time of the bake, until none is new.
-    /// Where backs send a receiver less than the tolerance, the fronts stand in for them.
-    fn add_backs(&mut self, keep: bool) -> Result<Vec<Chunk>, Error> {
+    /// What light reaches beside the receivers of the file becomes receivers for the time of the bake, until none is new:
+    /// near points, and the backs of surfaces. Where backs send less than the tolerance, the fronts stand in for them.
+    fn add_helpers(&mut self, keep: bool) -> Result<Vec<Chunk>, Error> {
         let mut chunks = Vec::new();
         let mut done = self.receivers.permanent as u32;
         while (done as usize) < self.receivers.list.len() {
-            let new = done..self.receivers.list.len() as u32;
-            done = new.end;
-            chunks.extend(self.first_pass(new, Stage::Backs, keep)?);
+            let new = (done..self.receivers.list.len() as u32).collect();
+            done = self.receivers.list.len() as u32;
+            chunks.extend(self.first_pass(new, Stage::Helpers, keep)?);
         }
         Ok(chunks)
     }
@@ -201,7 +220,8 @@ impl<'a> Run<'a> {
     fn bounce(&mut self, chunks: &[Chunk], repair: &Repair, transfer: &mut Field) -> Result<(), Error> {
         let limit = match self.settings.bounces {
             Bounces::Fixed(n) => n,
-            Bounces::Auto => settings::MAX_BOUNCES,
+            // What comes after these cannot matter; they end sooner where measured to.
+            Bounces::Auto => self.plan.bounces,
         };
         let mut before = 1.0;
         for n in 1..=limit {
@@ -240,6 +260,43 @@ impl<'a> Run<'a> {
             let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize].0;
             self.achieved.error = [at(0.5), at(0.95), worst];
             self.achieved.worst_receiver = id;
+        }
+    }
+}
+
+/// Receivers that others want beside those of the file, for the time of the bake.
+#[derive(Default)]
+struct Wanted {
+    /// Share of a receiver's light from where the backs that it sees are worth receivers of their own.
+    worth: f32,
+    /// Triangles whose backs are wanted.
+    backs: BTreeSet<u32>,
+    /// Receivers and their near points.
+    near: Vec<(u32, Vec<NearPoint>)>,
+}
+
+impl Wanted {
+    fn note(&mut self, id: u32, seen: &Gathered) {
+        if !seen.near.is_empty() {
+            self.near.push((id, seen.near.clone()));
+        }
+        if back_share(&seen.hits) <= self.worth {
+            return;
+        }
+        for source in seen.hits.iter().filter(|hit| hit.is_back()).map(|hit| hit.source()) {
+            if let Source::Triangle(triangle) = source {
+                self.backs.insert(triangle);
+            }
+        }
+    }
+
+    fn add_to(self, receivers: &mut Receivers, world: &World<'_>) {
+        let vertices: BTreeSet<u32> = self.backs.iter().flat_map(|&t| world.corners[t as usize]).collect();
+        for vertex in vertices {
+            receivers.add_back(vertex);
+        }
+        for (id, points) in self.near {
+            receivers.add_near(id, points.iter().map(|point| world.receiver_at(point)));
         }
     }
 }

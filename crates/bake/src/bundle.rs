@@ -1,10 +1,11 @@
 //! Puts a scene, its plan and its transfer together as a file that needs nothing else.
 
 use crate::field::Field;
-use crate::plan::{shines, simulates};
+use crate::material::Facts;
+use crate::plan::simulates;
 use crate::receivers::{NONE, Receivers};
 use coeff_io::{Achieved, Effect, Geometry, Plan, Prt, Settings, Transfer};
-use scene::{AlphaMode, Material, Mesh, Scene, TextureSlot, Wrap};
+use scene::{AlphaMode, Mesh, Scene, TextureSlot, Wrap};
 use std::collections::BTreeMap;
 
 /// What a bake found, receiver by receiver.
@@ -42,13 +43,13 @@ pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, 
         convention: sh_math::CONVENTION.to_owned(),
         scene: scene.name.clone(),
         settings: settings.clone(),
+        transfer: flattened(&baked.transfer, receivers.permanent, baked.plan.bands, baked.openness, albedo),
         plan: baked.plan,
         achieved: baked.achieved,
         meshes: parts.meshes,
         materials: parts.materials,
         cameras: cameras.iter().map(camera).collect(),
         geometry: parts.geometry,
-        transfer: flattened(&baked.transfer, receivers.permanent, settings.bands, baked.openness, albedo),
         textures: parts.textures,
     }
 }
@@ -70,7 +71,7 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     fn new(scene: &'a Scene, plan: &Plan) -> Self {
         let mut kept = KeptTextures { scene, index: BTreeMap::new(), textures: Vec::new() };
-        let materials: Vec<coeff_io::Material> = scene.materials.iter().map(|m| kept.material(m, plan)).collect();
+        let materials: Vec<coeff_io::Material> = (0..scene.materials.len()).map(|m| kept.material(m, plan)).collect();
         let slots = || {
             materials.iter().flat_map(|m| {
                 [m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.emissive_texture]
@@ -168,9 +169,11 @@ struct KeptTextures<'a> {
 }
 
 impl KeptTextures<'_> {
-    fn material(&mut self, m: &Material, plan: &Plan) -> coeff_io::Material {
-        let specular = simulates(plan, Effect::Specular) && shines(m);
-        let emission = simulates(plan, Effect::Emission);
+    fn material(&mut self, index: usize, plan: &Plan) -> coeff_io::Material {
+        let (m, facts) = (&self.scene.materials[index], Facts::of(self.scene, index));
+        let specular = simulates(plan, Effect::Specular) && facts.shines;
+        let emission = simulates(plan, Effect::Emission) && facts.emission > 0.0;
+        let transmission = simulates(plan, Effect::Transmission);
         let normal_maps = specular && simulates(plan, Effect::NormalMaps);
         coeff_io::Material {
             name: m.name.clone(),
@@ -184,14 +187,18 @@ impl KeptTextures<'_> {
             normal_texture: self.slot(m.normal_texture.filter(|_| normal_maps)),
             normal_scale: m.normal_scale,
             emissive: if emission { m.emissive.to_array() } else { [0.0; 3] },
-            emissive_texture: self.slot(m.emissive_texture.filter(|_| emission && m.emissive.max_element() > 0.0)),
+            emissive_texture: self.slot(m.emissive_texture.filter(|_| emission)),
             alpha: match m.alpha {
                 AlphaMode::Opaque => coeff_io::AlphaMode::Opaque,
-                AlphaMode::Mask(cutoff) => coeff_io::AlphaMode::Mask(cutoff),
-                AlphaMode::Blend => coeff_io::AlphaMode::Blend,
+                AlphaMode::Mask(cutoff) if simulates(plan, Effect::Masks) && facts.holes > 0.0 => {
+                    coeff_io::AlphaMode::Mask(cutoff)
+                }
+                AlphaMode::Mask(_) => coeff_io::AlphaMode::Opaque,
+                AlphaMode::Blend if transmission => coeff_io::AlphaMode::Blend,
+                AlphaMode::Blend => coeff_io::AlphaMode::Opaque,
             },
             specular,
-            transmission: m.transmission,
+            transmission: if transmission { m.transmission } else { 0.0 },
         }
     }
 

@@ -20,6 +20,10 @@ pub(crate) struct Gatherer<'a> {
     pub(crate) visibility: bool,
     /// Whether the blocking surfaces are wanted for bounces.
     pub(crate) hits: bool,
+    /// Receivers below this id go into the file: they get receivers at what they see very near, and the whole quality.
+    pub(crate) permanent: u32,
+    /// Share of a receiver's light from where a near surface is worth a receiver of its own.
+    pub(crate) worth: f32,
 }
 
 /// What a receiver sees.
@@ -39,13 +43,26 @@ pub(crate) struct Gathered {
     pub(crate) inside_share: f32,
     /// Blocking surfaces; their weights sum to `1 - openness`.
     pub(crate) hits: Vec<PackedHit>,
+    /// Points of surfaces so near that their vertices cannot speak for them; some hits refer to these.
+    pub(crate) near: Vec<NearPoint>,
+}
+
+/// A point of a surface that a receiver sees from nearer than the vertices of that surface are apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NearPoint {
+    /// Traced triangle.
+    pub(crate) triangle: u32,
+    /// Side that is seen.
+    pub(crate) front: bool,
+    /// Barycentrics of the second and third corner.
+    pub(crate) barycentrics: [f32; 2],
 }
 
 /// A point that a receiver sees, with its share of the receiver's cosine-weighted hemisphere.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PackedHit {
-    /// Traced triangle; bit 31 where its back was hit.
-    triangle_and_side: u32,
+    /// Traced triangle, or number among the receiver's near points; see the bits.
+    source: u32,
     /// Barycentrics of the second and third corner, in units of 1/65535.
     pub(crate) barycentrics: [u16; 2],
     /// Weight times albedo, RGB.
@@ -53,17 +70,31 @@ pub(crate) struct PackedHit {
 }
 
 impl PackedHit {
+    /// Whether the back of a triangle was hit.
     pub(crate) fn is_back(&self) -> bool {
-        self.triangle_and_side & BACK != 0
+        self.source & BACK != 0
     }
 
-    pub(crate) fn triangle(&self) -> u32 {
-        self.triangle_and_side & !BACK
+    /// What sends the light on.
+    pub(crate) fn source(&self) -> Source {
+        let number = self.source & !(BACK | NEAR);
+        if self.source & NEAR != 0 { Source::Near(number) } else { Source::Triangle(number) }
     }
 }
 
-/// Bit of [`PackedHit::triangle_and_side`] for the back.
+/// What sends light on to a receiver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// A traced triangle: interpolated from its vertices.
+    Triangle(u32),
+    /// A near point of the receiver.
+    Near(u32),
+}
+
+/// Bit of [`PackedHit::source`] for the back of a triangle.
 const BACK: u32 = 1 << 31;
+/// Bit of [`PackedHit::source`] for a near point.
+const NEAR: u32 = 1 << 30;
 
 /// Buffers that a thread keeps between receivers. Contents never change results.
 pub(crate) struct Worker {
@@ -91,13 +122,24 @@ impl Worker {
 impl Gatherer<'_> {
     /// Gathers for one receiver: a pure function of the scene, the settings and the receiver's index.
     pub(crate) fn gather(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Gathered {
+        let (mut out, step) = self.direct(receiver, index, worker);
+        if out.openness < 1.0 {
+            let origin = offset_origin(receiver.position, receiver.geometric_normal);
+            self.trace_blockers(origin, self.bank.pick(index).0, step, worker, &mut out);
+            self.pack(self.bank.pick(index).0, index, worker, &mut out);
+        }
+        out
+    }
+
+    /// Direct transfer alone, and the step of the direction set that it took; what blocks is not looked up.
+    pub(crate) fn direct(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> (Gathered, usize) {
         if !(self.visibility && self.world.can_shadow(receiver)) {
-            return self.unshadowed(receiver);
+            return (self.unshadowed(receiver), 0);
         }
         let origin = offset_origin(receiver.position, receiver.geometric_normal);
         let (set, turn) = self.bank.pick(index);
         let world_from_local = turned_frame(receiver.normal, turn);
-        let seen = self.trace_visibility(origin, set, &world_from_local, worker);
+        let seen = self.trace_visibility(origin, set, &world_from_local, self.rule(index), worker);
         let mut out = Gathered {
             transfer: seen.local.iter().map(|&x| x as f32).collect(),
             openness: seen.openness as f32,
@@ -106,10 +148,7 @@ impl Gatherer<'_> {
             ..Gathered::default()
         };
         Rotation::from_matrix(self.bands, world_from_local.as_dmat3()).apply(&mut out.transfer);
-        if seen.openness < 1.0 {
-            self.trace_blockers(origin, set, seen.step, worker, &mut out);
-        }
-        out
+        (out, seen.step)
     }
 
     /// Receivers whose results may wait together to be handed on: they take about 256 MiB at most.
@@ -131,10 +170,16 @@ impl Gatherer<'_> {
     }
 
     /// Doubles the rays until the estimate meets the error asked for, or the set is spent.
-    fn trace_visibility(&self, origin: Vec3, set: &DirectionSet, frame: &Mat3, worker: &mut Worker) -> Seen {
+    fn trace_visibility(
+        &self,
+        origin: Vec3,
+        set: &DirectionSet,
+        frame: &Mat3,
+        rule: Doubling,
+        worker: &mut Worker,
+    ) -> Seen {
         worker.directions.iter_mut().for_each(Vec::clear);
         worker.blocked.clear();
-        let rule = self.rule();
         let mut progress = rule.start();
         let mut sums = vec![0.0f64; self.bands.coefficients()];
         let (mut open_weight, mut start) = (0.0, 0);
@@ -151,7 +196,8 @@ impl Gatherer<'_> {
             match rule.look(&mut progress, step.end as u32, &seen.local) {
                 Verdict::Continue { .. } => {}
                 Verdict::Reached { error } | Verdict::Exhausted { error } => {
-                    seen.error = if error.is_finite() { error / self.bank.open_norm } else { 0.0 };
+                    seen.error =
+                        if error.is_finite() { error.max(self.resolution(step)) / self.bank.open_norm } else { 0.0 };
                     break;
                 }
             }
@@ -159,13 +205,22 @@ impl Gatherer<'_> {
         seen
     }
 
-    /// The stopping rule in the unit of the coefficients.
-    fn rule(&self) -> Doubling {
+    /// The stopping rule in the unit of the coefficients. What only lends light to others, through many rays each, may err
+    /// by twice as much.
+    fn rule(&self, index: u32) -> Doubling {
+        let slack = if index < self.permanent { 1.0 } else { 2.0 };
         let tolerance = match self.quality {
-            Quality::Error(asked) => f64::from(asked) * self.bank.open_norm,
+            Quality::Error(asked) => slack * f64::from(asked) * self.bank.open_norm,
             Quality::Rays(_) => 0.0,
         };
         Doubling { first: 0, last: u32::MAX, tolerance, confirmation: 2.0 }
+    }
+
+    /// Half of what a single ray changes: no estimate is below it, since where all rays of two looks met the same the change is
+    /// zero, however many more it would take to find the gap.
+    fn resolution(&self, step: &Step) -> f64 {
+        // The squares of the basis add up to n^2 / (4 pi) in every direction.
+        0.5 * (self.bands.coefficients() as f64 / (4.0 * std::f64::consts::PI)).sqrt() / step.samples
     }
 
     /// Adds to the sum over open directions what the sequence misses of the exact cosine lobe, in proportion to
@@ -203,16 +258,15 @@ impl Gatherer<'_> {
         let solid = |triangle, u, v| self.world.solid(triangle, u, v);
         let tracer = &self.world.tracer;
         tracer.closest_fan(origin, xs, ys, zs, &worker.wanted, &solid, &mut worker.fan, &mut worker.nearest);
-        self.pack(set, worker, out);
     }
 
-    /// Picks the blocked directions whose blockers are looked up: all of them, or an even part where rays go on until
-    /// an error is met, since light that bounced varies less than visibility. Returns their number.
+    /// Picks the blocked directions whose blockers are looked up: all of them, or an even part where there are very many or only
+    /// a probe is wanted. Returns their number.
     fn choose(&self, end: usize, worker: &mut Worker) -> u64 {
         let wanted = match self.quality {
             _ if !self.hits => PROBES,
             Quality::Rays(_) => end,
-            Quality::Error(_) => (end / 2).clamp(MIN_BLOCKERS, MAX_BLOCKERS),
+            Quality::Error(_) => MAX_BLOCKERS,
         };
         let blocked: usize = worker.blocked.iter().map(|w| w.count_ones() as usize).sum();
         worker.wanted.clear();
@@ -228,40 +282,31 @@ impl Gatherer<'_> {
         chosen as u64
     }
 
-    fn pack(&self, set: &DirectionSet, worker: &Worker, out: &mut Gathered) {
+    fn pack(&self, set: &DirectionSet, index: u32, worker: &Worker, out: &mut Gathered) {
         let found = || worker.nearest.iter().enumerate().filter_map(|(j, hit)| hit.map(|h| (j, h)));
         let total: f64 = found().map(|(j, _)| f64::from(set.weights[j])).sum();
         if total <= 0.0 {
             return;
         }
         let scale = (1.0 - f64::from(out.openness)) / total;
-        let mut inside = 0.0;
-        for (j, hit) in found() {
-            let weight = f64::from(set.weights[j]);
-            if !hit.front && !self.world.double_sided(hit.triangle) {
-                inside += weight;
-            }
-            if self.hits {
-                out.hits.push(self.packed(&hit, (weight * scale) as f32));
-            }
-        }
+        let is_inside = |hit: &Hit| !hit.front && !self.world.double_sided(hit.triangle);
+        let inside: f64 = found().filter(|(_, hit)| is_inside(hit)).map(|(j, _)| f64::from(set.weights[j])).sum();
         out.inside_share = (inside / total) as f32;
-    }
-
-    fn packed(&self, hit: &Hit, weight: f32) -> PackedHit {
-        let albedo = self.world.albedo(hit.triangle, hit.u, hit.v);
-        PackedHit {
-            triangle_and_side: hit.triangle | if hit.front { 0 } else { BACK },
-            barycentrics: [quantised(hit.u), quantised(hit.v)],
-            reflected: (albedo * weight).to_array(),
+        if !self.hits {
+            return;
         }
+        let weighed = found().map(|(j, hit)| (hit, (f64::from(set.weights[j]) * scale) as f32));
+        let weighed: Vec<(Hit, Vec3)> =
+            weighed.map(|(hit, weight)| (hit, self.world.albedo(hit.triangle, hit.u, hit.v) * weight)).collect();
+        if index < self.permanent && !crate::repair::is_inside(out.openness, out.inside_share) {
+            out.near = near_points(self.world, &weighed, self.worth);
+        }
+        out.hits.extend(weighed.iter().map(|(hit, reflected)| packed(hit, *reflected, &out.near)));
     }
 }
 
 /// Blockers looked up only to tell whether a receiver is inside a body.
 const PROBES: usize = 32;
-/// Fewest blockers looked up for bounces.
-const MIN_BLOCKERS: usize = 64;
 /// Most blockers looked up for bounces.
 const MAX_BLOCKERS: usize = 1024;
 
@@ -271,6 +316,40 @@ struct Seen {
     openness: f64,
     error: f64,
     step: usize,
+}
+
+/// A hit that refers to the near point on its side of its triangle where there is one.
+fn packed(hit: &Hit, reflected: Vec3, near: &[NearPoint]) -> PackedHit {
+    let side = if hit.front { 0 } else { BACK };
+    let found = near.binary_search_by_key(&(hit.triangle, hit.front), |point| (point.triangle, point.front));
+    PackedHit {
+        source: found.map_or(hit.triangle | side, |index| index as u32 | NEAR),
+        barycentrics: [quantised(hit.u), quantised(hit.v)],
+        reflected: reflected.to_array(),
+    }
+}
+
+/// The middles of what a receiver sees of each triangle that is nearer than it is large, where that sends on more than
+/// `worth` of the light, by triangle and side.
+///
+/// A surface that close lies in the shade of whatever the receiver stands on; its vertices, farther off, do not.
+fn near_points(world: &World<'_>, hits: &[(Hit, Vec3)], worth: f32) -> Vec<NearPoint> {
+    let mut near: Vec<&(Hit, Vec3)> = hits.iter().filter(|(hit, _)| hit.t < world.extent(hit.triangle)).collect();
+    near.sort_by_key(|(hit, _)| (hit.triangle, hit.front));
+    let groups = near.chunk_by(|(a, _), (b, _)| (a.triangle, a.front) == (b.triangle, b.front));
+    let middle = |group: &[&(Hit, Vec3)]| {
+        let share: f32 = group.iter().map(|(_, reflected)| reflected.max_element()).sum();
+        let mean = |of: fn(&Hit) -> f32| {
+            group.iter().map(|(hit, reflected)| of(hit) * reflected.max_element()).sum::<f32>() / share
+        };
+        let (u, v) = (mean(|hit| hit.u), mean(|hit| hit.v));
+        let away = |hit: &Hit| (hit.u - u).powi(2) + (hit.v - v).powi(2);
+        // A point that was hit: the mean itself may lie inside a body that pierces the triangle.
+        let (hit, _) = group.iter().min_by(|(a, _), (b, _)| away(a).total_cmp(&away(b)))?;
+        let barycentrics = [hit.u, hit.v];
+        (share > worth).then_some(NearPoint { triangle: hit.triangle, front: hit.front, barycentrics })
+    };
+    groups.filter_map(middle).collect()
 }
 
 /// Columns: tangent, bitangent, normal; turned about the normal.

@@ -7,24 +7,37 @@
 //! Light is carried between diffuse, two-sided surfaces. What blends or transmits lets light pass, emission is
 //! drawn but not transported, and a mask's empty parts do not exist for rays.
 
+mod account;
 mod albedo;
 mod bake;
+mod bandwidth;
+mod bend;
 mod bundle;
 mod directions;
+mod drawn;
 mod error;
+mod facts;
 mod field;
 mod gather;
+mod material;
 mod passes;
 mod plan;
+mod price;
 mod progress;
 mod receivers;
 mod refine;
 mod repair;
+mod rows;
+mod sample;
 pub mod settings;
+mod split;
+mod survey;
 mod world;
 
 pub use crate::bake::{ProgressFn, bake, plan};
 pub use error::Error;
+pub use price::{Price, price};
 pub use progress::{Progress, Stage};
 pub use receivers::{Receiver, Receivers};
 pub use refine::refine;
+pub use sample::{Sampled, sample};

@@ -1,7 +1,7 @@
 //! Runs receivers over the threads: the first pass, and one pass per bounce.
 
 use crate::field::Field;
-use crate::gather::{Gathered, Gatherer, PackedHit, Worker};
+use crate::gather::{Gathered, Gatherer, PackedHit, Source, Worker};
 use crate::progress::{Progress, Stage};
 use crate::receivers::{NONE, Receivers, morton_order};
 use crate::{Error, ProgressFn};
@@ -33,7 +33,7 @@ impl<'a> Monitor<'a> {
     }
 
     /// Counts one receiver.
-    fn receiver_done(&self, stage: Stage, total: u64, rays: u64) {
+    pub(crate) fn receiver_done(&self, stage: Stage, total: u64, rays: u64) {
         self.rays.fetch_add(rays, Ordering::Relaxed);
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         if done.is_multiple_of(REPORT) || done == total {
@@ -41,7 +41,7 @@ impl<'a> Monitor<'a> {
         }
     }
 
-    fn is_cancelled(&self) -> bool {
+    pub(crate) fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 
@@ -63,6 +63,13 @@ pub(crate) struct Chunk {
     seen: Option<SeenSurfaces>,
 }
 
+impl Chunk {
+    /// Receivers with what they were found to see.
+    pub(crate) fn of(ids: Vec<u32>, results: &[Gathered]) -> Self {
+        Self { ids, seen: Some(SeenSurfaces::of(results)) }
+    }
+}
+
 /// The surfaces that the receivers of a chunk see.
 struct SeenSurfaces {
     ends: Vec<u32>,
@@ -76,13 +83,13 @@ pub(crate) type Sink<'s> = dyn FnMut(u32, &Gathered) + 's;
 pub(crate) fn gather_pass(
     gatherer: &Gatherer<'_>,
     receivers: &Receivers,
-    ids: std::ops::Range<u32>,
+    ids: Vec<u32>,
     stage: Stage,
     keep: bool,
     monitor: &Monitor<'_>,
     sink: &mut Sink<'_>,
 ) -> Result<Vec<Chunk>, Error> {
-    let order = morton_order(&receivers.list, ids);
+    let order = morton_order(&receivers.list, ids.into_iter());
     let total = order.len() as u64;
     monitor.begin(stage, total);
     let mut chunks = Vec::new();
@@ -154,12 +161,12 @@ pub(crate) fn bounce_pass(
                     }
                     let mut rays = 0;
                     match &chunk.seen {
-                        Some(seen) => add_reflected(gatherer, receivers, seen.of_receiver(k), last, row),
+                        Some(seen) => add_reflected(gatherer, receivers, id, seen.of_receiver(k), last, row),
                         None => {
                             // Too much to keep: what the receiver sees is found again.
                             let again = gatherer.gather(&receivers.list[id as usize], id, worker);
                             rays = again.visibility_rays + again.bounce_rays;
-                            add_reflected(gatherer, receivers, &again.hits, last, row);
+                            add_reflected(gatherer, receivers, id, &again.hits, last, row);
                         }
                     }
                     monitor.receiver_done(stage, total, rays);
@@ -177,22 +184,40 @@ pub(crate) fn bounce_pass(
     Ok(next)
 }
 
-/// Adds albedo times interpolated transfer of every surface seen.
-fn add_reflected(gatherer: &Gatherer<'_>, receivers: &Receivers, hits: &[PackedHit], last: &Field, row: &mut [f32]) {
-    let stride = row.len() / last.channels;
+/// Adds albedo times transfer of every surface seen: of near points their own, else interpolated.
+fn add_reflected(
+    gatherer: &Gatherer<'_>,
+    receivers: &Receivers,
+    id: u32,
+    hits: &[PackedHit],
+    last: &Field,
+    row: &mut [f32],
+) {
     for hit in hits {
-        let corners = gatherer.world.corners[hit.triangle() as usize];
-        let [u, v] = hit.barycentrics.map(|b| f32::from(b) / 65535.0);
-        for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
-            let back = if hit.is_back() { receivers.back_of[corner as usize] } else { NONE };
-            let id = if back == NONE { corner } else { back };
-            let from = last.row(id);
-            for (c, (out, from)) in row.chunks_exact_mut(stride).zip(from.chunks_exact(stride)).enumerate() {
-                let factor = share * hit.reflected[c];
-                for (o, f) in out.iter_mut().zip(from) {
-                    *o += factor * f;
+        match hit.source() {
+            Source::Near(index) => {
+                add_scaled(row, last.row(receivers.near_of[id as usize] + index), hit.reflected, 1.0, last.channels);
+            }
+            Source::Triangle(triangle) => {
+                let corners = gatherer.world.corners[triangle as usize];
+                let [u, v] = hit.barycentrics.map(|b| f32::from(b) / 65535.0);
+                for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
+                    let back = if hit.is_back() { receivers.back_of[corner as usize] } else { NONE };
+                    let from = if back == NONE { corner } else { back };
+                    add_scaled(row, last.row(from), hit.reflected, share, last.channels);
                 }
             }
+        }
+    }
+}
+
+/// Adds a row times a factor per channel.
+fn add_scaled(row: &mut [f32], from: &[f32], reflected: [f32; 3], share: f32, channels: usize) {
+    let stride = row.len() / channels;
+    for (c, (out, from)) in row.chunks_exact_mut(stride).zip(from.chunks_exact(stride)).enumerate() {
+        let factor = share * reflected[c];
+        for (o, f) in out.iter_mut().zip(from) {
+            *o += factor * f;
         }
     }
 }

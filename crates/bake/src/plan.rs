@@ -1,102 +1,154 @@
-//! Decides, from the scene, which effects are simulated and why.
+//! Decides, from the scene, which effects are simulated.
 
-use crate::albedo::Albedo;
+use crate::bandwidth;
+use crate::facts::Facts;
 use crate::receivers::Receivers;
+use crate::rows;
+use crate::survey::{open_norms, survey};
 use crate::world::World;
-use coeff_io::{Bounces, Effect, Effects, Plan, PlanRow, Quality, Settings};
-use rayon::prelude::*;
-use scene::{Material, Scene};
+use crate::{Error, settings};
+use coeff_io::{BandChoice, Bounces, Effect, Effects, MeshPlan, Plan, Quality, Settings, Survey};
+use scene::Scene;
+use sh_math::Bands;
 
-/// Perceptual roughness below which a dielectric shows a reflection that is worth drawing.
-const SHINY: f32 = 0.6;
-/// Metallic share above which a surface shows a reflection.
-const METALLIC: f32 = 0.05;
-/// Rays per receiver that the estimate assumes where an error is asked for: the median seen at 1 %.
-const TYPICAL_RAYS: f64 = 700.0;
-
-/// Facts about the scene that decisions rest on.
-pub(crate) struct Facts {
-    receivers: u64,
-    shadowed: u64,
-    /// Mean diffuse albedo over the area of surfaces that block.
-    mean_albedo: f32,
-    colored: Vec<String>,
-    reflecting: Vec<String>,
-    masked: Vec<String>,
-    shiny: Vec<String>,
-    normal_mapped: Vec<String>,
-    emissive: Vec<String>,
-    transmissive: Vec<String>,
+/// The scene as rays meet it, its receivers, and what is simulated for them.
+pub(crate) struct Prepared<'a> {
+    pub(crate) world: World<'a>,
+    pub(crate) receivers: Receivers,
+    pub(crate) plan: Plan,
+    /// Permanent receivers that rays are traced for.
+    pub(crate) traced: Vec<u32>,
 }
 
-impl Facts {
-    /// Looks at every material once and at every receiver through the tree.
-    pub(crate) fn gather(scene: &Scene, world: &World<'_>, receivers: &Receivers) -> Self {
-        let fronts = &receivers.list[..receivers.permanent];
-        let shadowed = fronts.par_iter().filter(|r| world.can_shadow(r)).count();
-        let names = |test: &dyn Fn(&Material) -> bool| -> Vec<String> {
-            scene.materials.iter().filter(|m| test(m)).map(|m| m.name.clone()).collect()
-        };
-        let albedos: Vec<Albedo> = (0..scene.materials.len()).map(|m| Albedo::of(scene, m)).collect();
-        let with = |test: &dyn Fn(&Albedo) -> bool| -> Vec<String> {
-            let pairs = scene.materials.iter().zip(&albedos);
-            pairs.filter(|(m, a)| m.blocks_rays() && test(a)).map(|(m, _)| m.name.clone()).collect()
-        };
-        Self {
-            receivers: receivers.permanent as u64,
-            shadowed: shadowed as u64,
-            mean_albedo: mean_albedo(scene, &albedos),
-            colored: with(&|a| a.colored),
-            reflecting: with(&|a| a.largest > 0.0),
-            masked: names(&Material::is_masked),
-            shiny: names(&shines),
-            normal_mapped: names(&|m| m.normal_texture.is_some()),
-            emissive: names(&|m| m.emissive.max_element() > 0.0),
-            transmissive: names(&|m| !m.blocks_rays()),
-        }
+/// Looks at a scene that is split already, and decides. No ray is traced but those of the survey.
+pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings) -> Result<Prepared<'a>, Error> {
+    let mut receivers = Receivers::of(scene);
+    let mut facts = Facts::of_materials(scene, settings);
+    let holes = |m: usize| facts.materials[m].masked && (is_forced(settings) || facts.materials[m].holes > 0.0);
+    let mut world = World::with(scene, &|m| facts.materials[m].blocks, &|m| allows_masks(settings) && holes(m))?;
+    facts.add_receivers(scene, &world, &receivers);
+    world.trace_all = is_forced(settings);
+    let specular = allowed(settings, Effect::Specular);
+    let shows_light = |m: &crate::material::Facts| !m.is_black() || specular && m.shines;
+    if !is_forced(settings) {
+        facts.mark_dark(scene, &mut receivers, &shows_light);
     }
+    let needs_rays = |&r: &u32| {
+        let receiver = &receivers.list[r as usize];
+        !receiver.dark && (world.trace_all && receiver.sound || facts.is_shadowed(r))
+    };
+    let traced: Vec<u32> = match allowed(settings, Effect::Visibility) {
+        true => (0..receivers.permanent as u32).filter(needs_rays).collect(),
+        false => Vec::new(),
+    };
+    let survey = survey(&world, &receivers.list, &traced, settings)?;
+    let plan = decide(&facts, survey, traced.len() as u64, settings);
+    Ok(Prepared { world, receivers, plan, traced })
 }
 
-/// Whether a material shows a reflection that is worth drawing.
-pub(crate) fn shines(material: &Material) -> bool {
-    material.metallic > METALLIC || material.roughness < SHINY
-}
-
-fn mean_albedo(scene: &Scene, albedos: &[Albedo]) -> f32 {
-    let (mut area, mut sum) = (0.0f64, 0.0f64);
-    for mesh in &scene.meshes {
-        let material = mesh.material as usize;
-        if !scene.materials[material].blocks_rays() {
-            continue;
-        }
-        let mesh_area: f64 = (0..mesh.triangles.len()).map(|t| mesh.area(t)).sum();
-        area += mesh_area;
-        sum += mesh_area * f64::from(albedos[material].mean);
-    }
-    if area > 0.0 { (sum / area) as f32 } else { 0.0 }
+/// What is simulated, before it is put into words.
+pub(crate) struct Decisions {
+    pub(crate) visibility: bool,
+    pub(crate) interreflection: bool,
+    pub(crate) color: bool,
+    pub(crate) masks: bool,
+    pub(crate) specular: bool,
+    pub(crate) normal_maps: bool,
+    pub(crate) emission: bool,
+    pub(crate) transmission: bool,
+    /// Receivers that rays are traced for.
+    pub(crate) traced: u64,
+    pub(crate) bands: u32,
+    /// Bands that would do, were fewer allowed.
+    pub(crate) bands_needed: u32,
+    /// What is left out with n bands, from 0 on.
+    pub(crate) left_out: Vec<f64>,
+    /// Bound from the largest albedo.
+    pub(crate) bounces: u32,
+    pub(crate) expected_bounces: u32,
+    /// Mean and largest share of an open receiver's light that a bounce brings: albedo times coverage.
+    pub(crate) bounced: [f32; 2],
 }
 
 /// Decides on every effect.
-pub(crate) fn decide(facts: &Facts, settings: &Settings) -> Plan {
-    let visibility = allowed(settings, Effect::Visibility) && (forced(settings) || facts.shadowed > 0);
+fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Plan {
+    let forced = is_forced(settings);
+    let wanted = |effect, called_for: bool| allowed(settings, effect) && (forced || called_for);
+    let drawn = |effect, called_for: bool| allowed(settings, effect) && called_for;
+    let visibility = wanted(Effect::Visibility, traced > 0);
+    let bounced = [facts.mean_albedo * survey.coverage[0], facts.largest_albedo * survey.coverage[1]];
+    let tolerance = f64::from(tolerance(settings.quality));
     let bounces = match settings.bounces {
         Bounces::Fixed(n) => n,
-        Bounces::Auto => bound_bounces(facts.mean_albedo, tolerance(settings.quality)),
+        Bounces::Auto => most_bounces(facts.largest_albedo, tolerance).max(u32::from(forced)),
     };
-    let interreflection = visibility
-        && bounces > 0
-        && allowed(settings, Effect::Interreflection)
-        && (forced(settings) || !facts.reflecting.is_empty());
-    let color = interreflection && allowed(settings, Effect::Color) && (forced(settings) || !facts.colored.is_empty());
-    let decisions =
-        Decisions { visibility, interreflection, color, bounces: if interreflection { bounces } else { 0 } };
+    let interreflection = visibility && bounces > 0 && wanted(Effect::Interreflection, facts.largest_albedo > 0.0);
+    let gain = if interreflection { gain(bounced[0]) } else { 1.0 };
+    let left_out = bandwidth::left_out(&survey, &open_norms(bands(settings)), &settings.light, gain);
+    let bands_needed = bandwidth::needed(&left_out, tolerance);
+    let d = Decisions {
+        visibility,
+        interreflection,
+        color: interreflection && wanted(Effect::Color, facts.colored.any()),
+        masks: drawn(Effect::Masks, facts.holed.any() || forced && facts.masked.any()),
+        specular: drawn(Effect::Specular, facts.shiny.any()),
+        normal_maps: drawn(Effect::NormalMaps, facts.bumpy.any() && allowed(settings, Effect::Specular)),
+        emission: drawn(Effect::Emission, facts.emissive.any()),
+        transmission: drawn(Effect::Transmission, facts.transmissive.any()),
+        traced,
+        bands: match settings.band_choice {
+            BandChoice::Needed if !forced => bands_needed,
+            BandChoice::Needed | BandChoice::Exactly => settings.bands,
+        },
+        bands_needed,
+        left_out,
+        bounces: if interreflection { bounces } else { 0 },
+        expected_bounces: if interreflection {
+            expected_bounces(settings.bounces, facts.mean_albedo * survey.coverage[1], tolerance)
+        } else {
+            0
+        },
+        bounced,
+    };
     Plan {
-        rows: rows(facts, settings, &decisions),
+        rows: rows::rows(facts, &survey, settings, &d),
+        meshes: meshes(facts, &d),
         receivers: facts.receivers,
         shadowed_receivers: facts.shadowed,
-        channels: if color { 3 } else { 1 },
-        bounces: decisions.bounces,
+        dark_receivers: facts.dark,
+        bands: d.bands,
+        channels: if d.color { 3 } else { 1 },
+        bounces: d.bounces,
+        expected_bounces: d.expected_bounces.min(d.bounces),
+        survey,
     }
+}
+
+/// What each mesh calls for.
+fn meshes(facts: &Facts, d: &Decisions) -> Vec<MeshPlan> {
+    let of = |(index, mesh): (usize, &crate::facts::MeshFacts)| {
+        let material = &facts.materials[mesh.material];
+        let lit = mesh.shadowed > 0 && !mesh.dark;
+        let calls = |effect| match effect {
+            Effect::Visibility => d.visibility && lit,
+            Effect::Interreflection => d.interreflection && lit,
+            Effect::Color => d.color && lit,
+            Effect::Masks => d.masks && material.holes > 0.0,
+            Effect::Specular => d.specular && material.shines,
+            Effect::NormalMaps => d.normal_maps && material.shines && material.bumpy,
+            Effect::Emission => d.emission && material.emission > 0.0,
+            Effect::Transmission => d.transmission && material.transmits,
+            // Bands are the same for all, and motion is not simulated.
+            Effect::Bands | Effect::Motion => false,
+        };
+        MeshPlan {
+            mesh: index as u32,
+            receivers: mesh.receivers,
+            shadowed: mesh.shadowed,
+            effects: Effect::ALL.into_iter().filter(|&effect| calls(effect)).collect(),
+        }
+    };
+    facts.meshes.iter().enumerate().map(of).collect()
 }
 
 /// Change of the result below which a bounce is not worth simulating.
@@ -117,166 +169,69 @@ pub(crate) fn simulates(plan: &Plan, effect: Effect) -> bool {
     plan.rows.iter().any(|row| row.effect == effect && row.simulate)
 }
 
-/// Bounces until the mean albedo to that power is below the tolerance: a bound before any ray.
-fn bound_bounces(albedo: f32, tolerance: f32) -> u32 {
-    if albedo <= 0.0 {
+/// Bounces after which less than the tolerance can come: `a^(n+1) / (1 - a)` bounds the rest against an open receiver, since
+/// every bounce is a weighted sum of the one before with weights that sum to the largest albedo `a` at most.
+fn most_bounces(albedo: f32, tolerance: f64) -> u32 {
+    geometric(f64::from(albedo), tolerance)
+}
+
+/// The same for the mean albedo and the largest coverage, since the worst receiver decides: what is expected, not a bound.
+fn expected_bounces(asked: Bounces, bounced: f32, tolerance: f64) -> u32 {
+    match asked {
+        Bounces::Fixed(n) => n,
+        Bounces::Auto => geometric(f64::from(bounced), tolerance).max(1),
+    }
+}
+
+/// Least n for which `a^(n+1) / (1 - a)` is below the tolerance.
+fn geometric(a: f64, tolerance: f64) -> u32 {
+    if a <= 0.0 {
         return 0;
     }
-    if albedo >= 0.999 {
-        return crate::settings::MAX_BOUNCES;
+    if a >= 0.999 {
+        return settings::MAX_BOUNCES;
     }
-    let n = libm::ceil(libm::log(f64::from(tolerance)) / libm::log(f64::from(albedo)));
-    (n as u32).clamp(1, crate::settings::MAX_BOUNCES)
+    let n = libm::ceil(libm::log(tolerance * (1.0 - a)) / libm::log(a)) - 1.0;
+    (n.max(0.0) as u32).min(settings::MAX_BOUNCES)
 }
 
-struct Decisions {
-    visibility: bool,
-    interreflection: bool,
-    color: bool,
-    bounces: u32,
+/// By how much bounces are expected to add to the direct transfer, from mean albedo and coverage.
+fn gain(bounced: f32) -> f64 {
+    1.0 / (1.0 - f64::from(bounced.min(0.95)))
 }
 
-fn forced(settings: &Settings) -> bool {
+/// The bands asked for.
+fn bands(settings: &Settings) -> Bands {
+    Bands::new(settings.bands).expect("checked with the settings")
+}
+
+/// Whether everything is simulated, called for or not.
+pub(crate) fn is_forced(settings: &Settings) -> bool {
     settings.effects == Effects::All
 }
 
-fn allowed(settings: &Settings, effect: Effect) -> bool {
+/// Whether the settings leave an effect to the scene.
+pub(crate) fn allowed(settings: &Settings, effect: Effect) -> bool {
     match &settings.effects {
         Effects::Auto | Effects::All => true,
         Effects::Only(list) => list.contains(&effect),
     }
 }
 
-fn rows(facts: &Facts, settings: &Settings, d: &Decisions) -> Vec<PlanRow> {
-    let per_receiver = match settings.quality {
-        Quality::Rays(n) => f64::from(n),
-        Quality::Error(e) => TYPICAL_RAYS * f64::from(0.01 / e).max(0.05),
-    };
-    let traced = facts.shadowed;
-    let visibility_rays = if d.visibility { (traced as f64 * per_receiver) as u64 } else { 0 };
-    let coefficients = u64::from(settings.bands * settings.bands);
-    let plane_bytes = facts.receivers * coefficients * 4;
-    let table = Table { facts, settings };
-    vec![
-        table.row(
-            Effect::Visibility,
-            d.visibility,
-            table.visibility_reason(),
-            &[],
-            visibility_rays,
-            if d.visibility { facts.receivers * 4 } else { 0 },
-        ),
-        table.row(
-            Effect::Interreflection,
-            d.interreflection,
-            table.interreflection_reason(d),
-            &facts.reflecting,
-            if d.interreflection { visibility_rays / 4 } else { 0 },
-            0,
-        ),
-        table.row(
-            Effect::Color,
-            d.color,
-            table.color_reason(d),
-            &facts.colored,
-            0,
-            if d.color { 2 * plane_bytes } else { 0 },
-        ),
-        table.drawn(
-            Effect::Masks,
-            &facts.masked,
-            "surfaces have alpha masks that rays may pass",
-            "no surface has an alpha mask",
-        ),
-        table.drawn(
-            Effect::Specular,
-            &facts.shiny,
-            "materials are metallic or smooth enough to mirror the light",
-            "every material is rough and dielectric",
-        ),
-        table.drawn(
-            Effect::NormalMaps,
-            &facts.normal_mapped,
-            "materials have normal maps, which bend reflections",
-            "no material has a normal map",
-        ),
-        table.drawn(
-            Effect::Emission,
-            &facts.emissive,
-            "surfaces emit light (drawn, not transported)",
-            "no surface emits light",
-        ),
-        table.drawn(
-            Effect::Transmission,
-            &facts.transmissive,
-            "surfaces blend or transmit: rays pass them",
-            "every surface is opaque",
-        ),
-    ]
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-struct Table<'a> {
-    facts: &'a Facts,
-    settings: &'a Settings,
-}
-
-impl Table<'_> {
-    fn row(&self, effect: Effect, simulate: bool, reason: String, by: &[String], rays: u64, bytes: u64) -> PlanRow {
-        PlanRow { effect, simulate, reason, called_for_by: by.iter().take(5).cloned().collect(), rays, bytes }
-    }
-
-    /// An effect that costs no rays: it follows from the materials.
-    fn drawn(&self, effect: Effect, by: &[String], yes: &str, no: &str) -> PlanRow {
-        let simulate = allowed(self.settings, effect) && !by.is_empty();
-        let reason = match (by.len(), allowed(self.settings, effect)) {
-            (0, _) => no.to_owned(),
-            (_, false) => "left out by --effects".to_owned(),
-            (n, true) => format!("{n} {yes}"),
-        };
-        self.row(effect, simulate, reason, by, 0, 0)
-    }
-
-    fn visibility_reason(&self) -> String {
-        let (shadowed, all) = (self.facts.shadowed, self.facts.receivers);
-        if !allowed(self.settings, Effect::Visibility) {
-            return "left out by --effects".to_owned();
+    /// Against the sum of the series: with n bounces the rest is below the tolerance, with one fewer it is not.
+    #[test]
+    fn bounces_end_where_the_series_does() {
+        for a in [0.001f64, 0.1, 0.5, 0.8, 0.95] {
+            let rest = |n: u32| (n + 1..5000).map(|k| a.powi(k as i32)).sum::<f64>();
+            let n = geometric(a, 2.5e-3);
+            assert!(rest(n) <= 2.5e-3, "{a}: {n} bounces leave {}", rest(n));
+            assert!(n == 0 || rest(n - 1) > 2.5e-3, "{a}: {} bounces would do (can fail)", n - 1);
         }
-        match shadowed {
-            0 => format!("nothing stands above any of the {all} receivers: closed form, no rays"),
-            _ => format!("something stands above {shadowed} of {all} receivers; the others have a closed form"),
-        }
-    }
-
-    fn interreflection_reason(&self, d: &Decisions) -> String {
-        if !allowed(self.settings, Effect::Interreflection) {
-            return "left out by --effects".to_owned();
-        }
-        if !d.visibility {
-            return "no receiver sees a surface".to_owned();
-        }
-        if self.facts.reflecting.is_empty() {
-            return "every surface is black".to_owned();
-        }
-        if self.settings.bounces == Bounces::Fixed(0) {
-            return "--bounces 0".to_owned();
-        }
-        format!(
-            "surfaces reflect {:.0} % on average: about {} bounces matter",
-            100.0 * self.facts.mean_albedo,
-            d.bounces
-        )
-    }
-
-    fn color_reason(&self, d: &Decisions) -> String {
-        if !allowed(self.settings, Effect::Color) {
-            return "left out by --effects".to_owned();
-        }
-        if !d.interreflection {
-            return "no bounces, so colour cannot enter: albedo is applied when drawn".to_owned();
-        }
-        match self.facts.colored.len() {
-            0 => "every reflecting surface is grey: one channel holds all".to_owned(),
-            n => format!("light bounces off {n} coloured materials: three channels"),
-        }
+        assert_eq!(geometric(0.0, 1e-3), 0, "black surfaces send nothing on");
+        assert_eq!(geometric(1.0, 1e-3), settings::MAX_BOUNCES, "white ones without end");
     }
 }

@@ -5,7 +5,7 @@
 pub struct Progress {
     /// What is being computed.
     pub stage: Stage,
-    /// Receivers finished in this stage.
+    /// Receivers (of the refinement: points between vertices) finished in this stage.
     pub done: u64,
     /// Receivers of this stage.
     pub total: u64,
@@ -16,10 +16,12 @@ pub struct Progress {
 /// A stage of the bake.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
+    /// Where the transfer bends between vertices.
+    Refinement,
     /// What each receiver sees of the sky.
     Visibility,
-    /// The same for the backs of surfaces that light reaches.
-    Backs,
+    /// The same for the backs of surfaces and for surfaces very near to a receiver, where light reaches them.
+    Helpers,
     /// The n-th bounce, from 1.
     Bounce(u32),
 }
@@ -27,8 +29,9 @@ pub enum Stage {
 impl std::fmt::Display for Stage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Self::Refinement => write!(f, "refinement"),
             Self::Visibility => write!(f, "visibility"),
-            Self::Backs => write!(f, "backs of surfaces"),
+            Self::Helpers => write!(f, "backs and near surfaces"),
             Self::Bounce(n) => write!(f, "bounce {n}"),
         }
     }

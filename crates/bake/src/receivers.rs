@@ -19,6 +19,8 @@ pub struct Receiver {
     pub geometric_normal: Vec3,
     /// Whether there is a normal at all; a receiver without one is repaired from its neighbours.
     pub sound: bool,
+    /// Whether its surface neither scatters nor mirrors light, so that what arrives shows nowhere; set by the plan.
+    pub dark: bool,
 }
 
 /// All receivers of a scene. Vertex `v` of the flattened scene is receiver `v`.
@@ -32,6 +34,8 @@ pub struct Receivers {
     pub permanent: usize,
     /// Of each vertex the receiver on its back, or `u32::MAX`.
     pub back_of: Vec<u32>,
+    /// Of each receiver the first of those at its near points; `u32::MAX` or missing where it has none.
+    pub(crate) near_of: Vec<u32>,
     /// Normals that had to be replaced by those of the faces.
     pub replaced_normals: usize,
 }
@@ -40,7 +44,15 @@ impl Receivers {
     /// Makes a receiver of every vertex, and one more for the back where a material is two-sided.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        let mut all = Self { list: Vec::new(), vertices: 0, permanent: 0, back_of: Vec::new(), replaced_normals: 0 };
+        let mut all = Self {
+            list: Vec::new(),
+            vertices: 0,
+            permanent: 0,
+            back_of: Vec::new(),
+            near_of: Vec::new(),
+
+            replaced_normals: 0,
+        };
         for mesh in &scene.meshes {
             all.add_mesh(mesh);
         }
@@ -59,20 +71,18 @@ impl Receivers {
         all
     }
 
+    /// Adds receivers at what a receiver sees very near, for the time of the bake.
+    pub(crate) fn add_near(&mut self, receiver: u32, points: impl Iterator<Item = Receiver>) {
+        self.near_of.resize(self.list.len(), NONE);
+        self.near_of[receiver as usize] = self.list.len() as u32;
+        self.list.extend(points);
+    }
+
     /// Adds the back of a vertex if it has none yet, and returns its receiver.
     pub(crate) fn add_back(&mut self, vertex: u32) -> u32 {
         if self.back_of[vertex as usize] == NONE {
             self.back_of[vertex as usize] = self.list.len() as u32;
-            let front = self.list[vertex as usize];
-            // Over a fold a front is drawn in to above the surface, which is below it on the back.
-            let way = front.position - front.vertex;
-            let above = way.dot(front.geometric_normal).max(0.0);
-            self.list.push(Receiver {
-                position: front.position - above * front.geometric_normal,
-                normal: -front.normal,
-                geometric_normal: -front.geometric_normal,
-                ..front
-            });
+            self.list.push(self.list[vertex as usize].back());
         }
         self.back_of[vertex as usize]
     }
@@ -80,24 +90,47 @@ impl Receivers {
     fn add_mesh(&mut self, mesh: &Mesh) {
         let faces = FaceSums::of(mesh);
         for vertex in 0..mesh.positions.len() {
-            let geometric = faces.normal[vertex].try_normalize();
-            let shading = mesh.normals.get(vertex).and_then(|n| n.try_normalize());
-            let normal = match (shading, geometric) {
-                (Some(s), Some(g)) if s.dot(g) > 0.0 => s,
-                (_, Some(g)) => {
-                    self.replaced_normals += 1;
-                    g
-                }
-                (s, None) => s.unwrap_or(Vec3::Y),
-            };
-            let geometric_normal = geometric.unwrap_or(normal);
-            self.list.push(Receiver {
-                position: drawn_in(mesh.positions[vertex], faces.centre(vertex), geometric_normal),
-                vertex: mesh.positions[vertex],
-                normal,
-                geometric_normal,
-                sound: shading.is_some() || geometric.is_some(),
-            });
+            let shading = mesh.normals.get(vertex).copied();
+            let at = mesh.positions[vertex];
+            let (receiver, replaced) = Receiver::new(at, shading, faces.normal[vertex], faces.centre(vertex));
+            self.replaced_normals += usize::from(replaced);
+            self.list.push(receiver);
+        }
+    }
+}
+
+impl Receiver {
+    /// A receiver at a point of a mesh, with the sum of the normals of the faces around it and their middle; also whether
+    /// the shading normal was no use and that of the faces took its place.
+    pub(crate) fn new(at: Vec3, shading: Option<Vec3>, faces: Vec3, centre: Vec3) -> (Self, bool) {
+        let geometric = faces.try_normalize();
+        let shading = shading.and_then(|n| n.try_normalize());
+        let (normal, replaced) = match (shading, geometric) {
+            (Some(s), Some(g)) if s.dot(g) > 0.0 => (s, false),
+            (_, Some(g)) => (g, true),
+            (s, None) => (s.unwrap_or(Vec3::Y), false),
+        };
+        let geometric_normal = geometric.unwrap_or(normal);
+        let receiver = Self {
+            position: drawn_in(at, centre, geometric_normal),
+            vertex: at,
+            normal,
+            geometric_normal,
+            sound: shading.is_some() || geometric.is_some(),
+            dark: false,
+        };
+        (receiver, replaced)
+    }
+
+    /// The same point of the surface seen from behind.
+    pub(crate) fn back(&self) -> Self {
+        // Over a fold a front is drawn in to above the surface, which is below it on the back.
+        let above = (self.position - self.vertex).dot(self.geometric_normal).max(0.0);
+        Self {
+            position: self.position - above * self.geometric_normal,
+            normal: -self.normal,
+            geometric_normal: -self.geometric_normal,
+            ..*self
         }
     }
 }
@@ -114,9 +147,9 @@ fn drawn_in(position: Vec3, centre: Vec3, normal: Vec3) -> Vec3 {
 }
 
 /// Sums over the triangles around each vertex of a mesh.
-struct FaceSums {
+pub(crate) struct FaceSums {
     /// Area-weighted normals.
-    normal: Vec<Vec3>,
+    pub(crate) normal: Vec<Vec3>,
     /// Area-weighted centres, with the weight in `area`.
     centre: Vec<Vec3>,
     area: Vec<f32>,
@@ -124,7 +157,7 @@ struct FaceSums {
 }
 
 impl FaceSums {
-    fn of(mesh: &Mesh) -> Self {
+    pub(crate) fn of(mesh: &Mesh) -> Self {
         let n = mesh.positions.len();
         let mut sums = Self {
             normal: vec![Vec3::ZERO; n],
@@ -148,7 +181,7 @@ impl FaceSums {
         sums
     }
 
-    fn centre(&self, vertex: usize) -> Vec3 {
+    pub(crate) fn centre(&self, vertex: usize) -> Vec3 {
         let at = self.positions[vertex];
         if self.area[vertex] > 0.0 { at + self.centre[vertex] / self.area[vertex] } else { at }
     }

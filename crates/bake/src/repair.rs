@@ -1,8 +1,12 @@
 //! Mends receivers that cannot see: inside geometry, or without a normal.
 
 use crate::field::Field;
-use crate::receivers::{NONE, Receivers};
+use crate::receivers::{NONE, Receiver, Receivers};
+use crate::world::World;
 use coeff_io::RepairCounts;
+use glam::Vec3;
+use rayon::prelude::*;
+use raytrace::{Ray, offset_origin};
 use scene::Scene;
 
 /// More than this share of what a receiver sees being the insides of bodies means that it is inside one.
@@ -25,8 +29,44 @@ pub(crate) struct Finding {
 impl Finding {
     /// Whether the receiver stands inside a body.
     pub(crate) fn is_inside(self) -> bool {
-        self.openness < 0.5 && self.inside_share > INSIDE
+        is_inside(self.openness, self.inside_share)
     }
+}
+
+/// Whether a receiver of this open share, which meets insides of bodies in this share of its blocked directions, stands
+/// inside one.
+pub(crate) fn is_inside(openness: f32, inside_share: f32) -> bool {
+    openness < 0.5 && inside_share > INSIDE
+}
+
+/// Share of the way to where an edge meets a body that a receiver is moved: just before it.
+const BEFORE: f32 = 0.98;
+
+/// For receivers inside bodies with a sound neighbour: where the edge from there runs into the body. Seen from that point
+/// the surface is as dark as it is along the line where it leaves the body, which the mean of the neighbours is not.
+pub(crate) fn emerge(scene: &Scene, world: &World<'_>, receivers: &Receivers, inside: &[bool]) -> Vec<(u32, Vec3)> {
+    if !inside.contains(&true) {
+        return Vec::new();
+    }
+    let neighbours = Neighbours::of(scene, receivers);
+    let stuck = |id: u32| inside[id as usize] || !receivers.list[id as usize].sound;
+    let way_out = |id: u32| {
+        let sound = neighbours.around(id).iter().copied().filter(|&n| !stuck(n));
+        let points = sound.filter_map(|n| entry(world, &receivers.list[n as usize], &receivers.list[id as usize]));
+        let home = receivers.list[id as usize].vertex;
+        points.min_by(|a, b| a.distance_squared(home).total_cmp(&b.distance_squared(home)))
+    };
+    let ids: Vec<u32> = (0..inside.len() as u32).filter(|&id| inside[id as usize]).collect();
+    ids.into_par_iter().filter_map(|id| way_out(id).map(|point| (id, point))).collect()
+}
+
+/// The point of the way from one receiver to another just before it runs into something.
+fn entry(world: &World<'_>, from: &Receiver, to: &Receiver) -> Option<Vec3> {
+    let start = offset_origin(from.position, from.geometric_normal);
+    let end = offset_origin(to.position, from.geometric_normal);
+    let solid = |triangle, u, v| world.solid(triangle, u, v);
+    let hit = world.tracer.closest(&Ray { t_max: 1.0, ..Ray::new(start, end - start) }, &solid)?;
+    Some(from.position + BEFORE * hit.t * (to.position - from.position))
 }
 
 impl Repair {

@@ -1,23 +1,26 @@
 //! Presets and limits of the bake settings.
 
 use crate::Error;
-use coeff_io::{Bounces, Effect, Effects, Quality, Refine, Sampler, Settings};
+use coeff_io::{BandChoice, Bounces, Effect, Effects, Quality, Refine, Sampler, Settings};
 
 /// Most bands that a bake may ask for: 1,024 coefficients per receiver and channel.
 pub const MAX_BANDS: u32 = 32;
 /// Most rays per receiver.
 pub const MAX_RAYS: u32 = 1 << 16;
 /// Fewest rays of the stratified sequence: below, none may lie above the horizon.
-const MIN_STRATIFIED: u32 = 16;
+pub(crate) const MIN_STRATIFIED: u32 = 16;
 /// Most bounces.
-pub const MAX_BOUNCES: u32 = 1000;
+pub const MAX_BOUNCES: u32 = 10_000;
 
 /// What the command line bakes by default: 5 bands to a relative error of 1 %.
 #[must_use]
 pub fn standard() -> Settings {
     Settings {
         bands: 5,
+        band_choice: BandChoice::Exactly,
+        light: Vec::new(),
         quality: Quality::Error(0.01),
+        time: None,
         bounces: Bounces::Auto,
         refine: Refine::Auto,
         effects: Effects::Auto,
@@ -42,6 +45,7 @@ pub fn check(settings: &Settings) -> Result<(), Error> {
     if settings.bands == 0 || settings.bands > MAX_BANDS {
         return refuse("--bands", settings.bands.to_string(), "use 1 to 32");
     }
+    check_light(settings)?;
     match settings.quality {
         Quality::Rays(n) if n == 0 || n > MAX_RAYS => {
             return refuse("--rays", n.to_string(), "use 1 to 65536");
@@ -74,7 +78,17 @@ pub fn check(settings: &Settings) -> Result<(), Error> {
         return refuse("--refine", length.to_string(), "give a length above 0 in metres, auto or off");
     }
     match settings.bounces {
-        Bounces::Fixed(n) if n > MAX_BOUNCES => refuse("--bounces", n.to_string(), "use 0 to 1000, or auto"),
+        Bounces::Fixed(n) if n > MAX_BOUNCES => refuse("--bounces", n.to_string(), "use 0 to 10000, or auto"),
         Bounces::Fixed(_) | Bounces::Auto => Ok(()),
     }
+}
+
+fn check_light(settings: &Settings) -> Result<(), Error> {
+    let light = &settings.light;
+    let sound = light.iter().all(|norm| norm.is_finite() && *norm >= 0.0);
+    if sound && (light.is_empty() || light.len() >= settings.bands as usize) {
+        return Ok(());
+    }
+    let allowed = "give the norm of every band that is asked for, or none";
+    Err(Error::Setting { setting: "--probe", value: format!("a light of bands {light:?}"), allowed })
 }

@@ -1,13 +1,14 @@
 //! The scene as rays meet it: one list of triangles, and what a hit needs to know.
 
 use crate::Error;
+use crate::gather::NearPoint;
 use crate::receivers::Receiver;
 use glam::Vec3;
 use raytrace::Tracer;
 use scene::{AlphaMode, Scene};
 
-/// Bit 31 of a packed triangle says that its back was hit.
-const MAX_TRIANGLES: usize = (1 << 31) - 1;
+/// Bits 30 and 31 of a packed triangle say what was hit of it.
+const MAX_TRIANGLES: usize = (1 << 30) - 1;
 
 /// All surfaces that block light, flattened.
 pub(crate) struct World<'a> {
@@ -15,41 +16,50 @@ pub(crate) struct World<'a> {
     pub(crate) tracer: Tracer,
     /// Of each traced triangle: its corners as vertices of the whole scene.
     pub(crate) corners: Vec<[u32; 3]>,
-    /// Of each traced triangle: its mesh.
-    mesh: Vec<u32>,
-    /// Of each traced triangle: its index within the mesh.
-    local: Vec<u32>,
+    /// Of each traced triangle: its mesh and its index within the mesh.
+    sources: Vec<[u32; 2]>,
     /// Whether any traced triangle has a mask.
     has_masks: bool,
+    /// Whether rays are traced even for receivers that nothing stands above.
+    pub(crate) trace_all: bool,
 }
 
 impl<'a> World<'a> {
-    /// Flattens the scene and builds the tree; `masks` says whether alpha masks let rays pass.
+    /// Flattens the scene and builds the tree; `masks` says whether alpha masks with holes let rays pass.
     pub(crate) fn new(scene: &'a Scene, masks: bool) -> Result<Self, Error> {
+        let holes = |m: usize| masks && crate::material::hole_share(scene, m) > 0.0;
+        let masked: Vec<bool> = (0..scene.materials.len()).map(holes).collect();
+        Self::with(scene, &|m| scene.materials[m].blocks_rays(), &|m| masked[m])
+    }
+
+    /// The same; `blocks` says at which materials rays stop, `tested` of which the alpha mask is tested.
+    pub(crate) fn with(
+        scene: &'a Scene,
+        blocks: &dyn Fn(usize) -> bool,
+        tested: &dyn Fn(usize) -> bool,
+    ) -> Result<Self, Error> {
         let mut world = Self {
             scene,
             tracer: Tracer::build(&[], &[], &[]),
             corners: Vec::new(),
-            mesh: Vec::new(),
-            local: Vec::new(),
+            sources: Vec::new(),
             has_masks: false,
+            trace_all: false,
         };
         let mut positions: Vec<Vec3> = Vec::new();
         let mut masked = Vec::new();
         for (m, mesh) in scene.meshes.iter().enumerate() {
-            let material = &scene.materials[mesh.material as usize];
             let first = positions.len() as u32;
             positions.extend_from_slice(&mesh.positions);
             check_count(scene, "vertices", positions.len(), u32::MAX as usize / 2)?;
-            if !material.blocks_rays() {
+            if !blocks(mesh.material as usize) {
                 continue;
             }
-            let has_mask = masks && material.is_masked();
+            let has_mask = tested(mesh.material as usize);
             world.has_masks |= has_mask;
             for (t, corners) in mesh.triangles.iter().enumerate() {
                 world.corners.push(corners.map(|v| v + first));
-                world.mesh.push(m as u32);
-                world.local.push(t as u32);
+                world.sources.push([m as u32, t as u32]);
                 masked.push(has_mask);
             }
             check_count(scene, "triangles", world.corners.len(), MAX_TRIANGLES)?;
@@ -61,9 +71,24 @@ impl<'a> World<'a> {
         Ok(world)
     }
 
-    /// Whether anything can stand between a receiver and the sky: above its tangent plane, exactly, through the tree.
+    /// Whether rays are needed: where something can stand between a receiver and the sky, and what arrives shows.
     pub(crate) fn can_shadow(&self, receiver: &Receiver) -> bool {
-        receiver.sound && self.tracer.anything_above(receiver.vertex, receiver.normal)
+        !receiver.dark && (self.trace_all && receiver.sound || self.anything_above(receiver))
+    }
+
+    /// Whether anything stands above the tangent plane of a receiver, exactly, through the tree.
+    pub(crate) fn anything_above(&self, receiver: &Receiver) -> bool {
+        let Receiver { vertex, normal, .. } = *receiver;
+        receiver.sound && (self.tracer.anything_above(vertex, normal) || self.touches(receiver))
+    }
+
+    /// Whether a surface that faces the receiver lies between its tangent plane and itself. On a curved surface a receiver is drawn
+    /// in behind that plane, and where a body rests on the ground that is enough for the ground to hide all from its foot.
+    fn touches(&self, receiver: &Receiver) -> bool {
+        let way = receiver.vertex - receiver.position;
+        let depth = way.dot(receiver.normal);
+        // On a flat surface the way lies in the plane but for rounding, and a two-sided one would face its own back.
+        depth > 1e-5 * way.length() && self.tracer.anything_faced(receiver.vertex, receiver.normal, depth)
     }
 
     /// Whether the surface is there at a point of a masked triangle.
@@ -87,8 +112,39 @@ impl<'a> World<'a> {
         self.scene.materials[self.scene.meshes[mesh].material as usize].double_sided
     }
 
+    /// Longest edge of a traced triangle, metres.
+    pub(crate) fn extent(&self, triangle: u32) -> f32 {
+        let [a, b, c] = self.points(triangle);
+        a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt()
+    }
+
+    /// A receiver at a point of a traced triangle, on one side.
+    pub(crate) fn receiver_at(&self, point: &NearPoint) -> Receiver {
+        let [a, b, c] = self.points(point.triangle);
+        let [u, v] = point.barycentrics;
+        let mix = |a: Vec3, b: Vec3, c: Vec3| a + u * (b - a) + v * (c - a);
+        let (mesh, local) = self.locate(point.triangle);
+        let mesh = &self.scene.meshes[mesh];
+        let shading = mesh.triangles[local].map(|v| mesh.normals.get(v as usize).copied());
+        let shading = match shading {
+            [Some(a), Some(b), Some(c)] => Some(mix(a, b, c)),
+            _ => None,
+        };
+        let at = mix(a, b, c);
+        let (receiver, _) = Receiver::new(at, shading, (b - a).cross(c - a), at);
+        if point.front { receiver } else { receiver.back() }
+    }
+
+    /// Corners of a traced triangle, world space.
+    pub(crate) fn points(&self, triangle: u32) -> [Vec3; 3] {
+        let (mesh, local) = self.locate(triangle);
+        let mesh = &self.scene.meshes[mesh];
+        mesh.triangles[local].map(|v| mesh.positions[v as usize])
+    }
+
     fn locate(&self, triangle: u32) -> (usize, usize) {
-        (self.mesh[triangle as usize] as usize, self.local[triangle as usize] as usize)
+        let [mesh, local] = self.sources[triangle as usize];
+        (mesh as usize, local as usize)
     }
 }
 

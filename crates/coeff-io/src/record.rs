@@ -1,14 +1,21 @@
-//! How a bake came to be: what was asked, what was decided, what was reached.
+//! How a bake came to be: what was asked and what was reached.
 
+use crate::{Effect, EffectCost};
 use serde::{Deserialize, Serialize};
 
 /// What the user asked the baker for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Number of bands.
+    /// Number of bands, or the most where fewer may do.
     pub bands: u32,
+    /// Whether fewer bands may be baked.
+    pub band_choice: BandChoice,
+    /// Norm of each band of the light that the result is meant for, the largest of its channels; empty where none was named.
+    pub light: Vec<f32>,
     /// When to stop tracing.
     pub quality: Quality,
+    /// Seconds that were allowed, where the error asked for followed from them.
+    pub time: Option<f32>,
     /// How often light may bounce.
     pub bounces: Bounces,
     /// Whether large triangles are split before the bake.
@@ -21,6 +28,15 @@ pub struct Settings {
     pub seed: u64,
     /// Bytes that caches may take.
     pub memory: u64,
+}
+
+/// Whether bands may be left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BandChoice {
+    /// As many as asked for.
+    Exactly,
+    /// Those whose absence would show: as many as asked for at most.
+    Needed,
 }
 
 /// When the rays of a receiver suffice.
@@ -63,27 +79,6 @@ pub enum Effects {
     Only(Vec<Effect>),
 }
 
-/// One effect of light transport.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Effect {
-    /// Shadows: rays decide what a receiver sees.
-    Visibility,
-    /// Light that bounces between surfaces.
-    Interreflection,
-    /// Transfer in three channels.
-    Color,
-    /// Alpha masks that rays may pass.
-    Masks,
-    /// Reflections on materials that shine.
-    Specular,
-    /// Tangents for normal-mapped reflections.
-    NormalMaps,
-    /// Light that surfaces emit, as drawn.
-    Emission,
-    /// Surfaces that let light through.
-    Transmission,
-}
-
 /// The sequence that the rays of a receiver follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
@@ -93,38 +88,6 @@ pub enum Sampler {
     Fibonacci,
     /// Jittered grid over the sphere, as the first paper has it.
     Stratified,
-}
-
-/// Which effects a bake simulates, and why.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
-pub struct Plan {
-    /// One row per effect, in the order of [`Effect`].
-    pub rows: Vec<PlanRow>,
-    /// Receivers that are baked.
-    pub receivers: u64,
-    /// Receivers that something can stand above.
-    pub shadowed_receivers: u64,
-    /// Channels of the transfer.
-    pub channels: u32,
-    /// Most bounces that can change the result by more than the tolerance.
-    pub bounces: u32,
-}
-
-/// The decision on one effect.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PlanRow {
-    /// The effect.
-    pub effect: Effect,
-    /// Whether it is simulated.
-    pub simulate: bool,
-    /// The facts that decided it, in one sentence.
-    pub reason: String,
-    /// Objects that call for it, at most a handful by name.
-    pub called_for_by: Vec<String>,
-    /// Estimated rays.
-    pub rays: u64,
-    /// Estimated bytes in the file.
-    pub bytes: u64,
 }
 
 /// What a bake reached and what it took.
@@ -144,6 +107,8 @@ pub struct Achieved {
     pub bounce_changes: Vec<f32>,
     /// Receivers that needed repair.
     pub repairs: RepairCounts,
+    /// What each effect took and what was saved, in the order of the plan.
+    pub effects: Vec<EffectCost>,
 }
 
 /// Receivers that were found broken and mended from their neighbours.

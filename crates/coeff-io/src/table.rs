@@ -10,7 +10,7 @@ use std::io::{self, Read, Write};
 pub const MAGIC: [u8; 8] = *b"\x89PRT\r\n\x1a\n";
 
 /// Version of the format, apart from the version of the program.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Every chunk begins at a multiple of so many bytes, so that a mapped file can be used without copying.
 pub const ALIGNMENT: u64 = 16;

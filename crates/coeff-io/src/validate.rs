@@ -1,7 +1,7 @@
 //! Whether the parts of a [`Prt`] agree: no reader has to check an index, a length or a number again.
 
 use crate::table::{Chunk, Kind};
-use crate::{AlphaMode, Camera, Error, Material, Prt, Texture, TextureSlot};
+use crate::{AlphaMode, BandChoice, Camera, Error, Material, Prt, Texture, TextureSlot};
 
 /// Rounding that unit vectors and shares of 1 are allowed.
 const ROUNDING: f32 = 1e-3;
@@ -201,30 +201,56 @@ impl Check<'_> {
 
     /// Settings, plan and achieved error against the arrays.
     fn records(&self, prt: &Prt) -> Result<(), Error> {
-        let (plan, achieved, transfer) = (&prt.plan, &prt.achieved, &prt.transfer);
-        self.header(plan.channels == transfer.channels, || {
-            format!("the plan has {} channels, the transfer {}", plan.channels, transfer.channels)
-        })?;
-        self.header(prt.settings.bands == transfer.bands, || {
-            format!("the settings have {} bands, the transfer {}", prt.settings.bands, transfer.bands)
-        })?;
-        let aim = match prt.settings.quality {
-            crate::Quality::Error(error) => error.is_finite() && error > 0.0,
-            crate::Quality::Rays(rays) => rays > 0,
-        };
-        self.header(aim, || "the settings ask for no rays or no error".into())?;
+        let (plan, achieved) = (&prt.plan, &prt.achieved);
+        self.settings(prt)?;
         let again = |i: usize| plan.rows[..i].iter().any(|row| row.effect == plan.rows[i].effect);
         self.header(!(0..plan.rows.len()).any(again), || "the plan decides twice on one effect".into())?;
+        self.plan(prt)?;
         let vertices = prt.geometry.positions.len() as u64;
-        self.header(plan.shadowed_receivers <= plan.receivers, || {
-            "the plan has more shadowed receivers than receivers".into()
-        })?;
         self.header(u64::from(achieved.worst_receiver) < vertices, || {
             format!("the worst receiver {} does not exist", achieved.worst_receiver)
         })?;
         let sound = achieved.error.iter().chain(&achieved.bounce_changes).all(|v| v.is_finite() && *v >= 0.0);
         self.header(sound, || "an achieved error is no number".into())
     }
+
+    fn settings(&self, prt: &Prt) -> Result<(), Error> {
+        let (settings, transfer) = (&prt.settings, &prt.transfer);
+        let fits = match settings.band_choice {
+            BandChoice::Exactly => settings.bands == transfer.bands,
+            BandChoice::Needed => settings.bands >= transfer.bands,
+        };
+        self.header(fits, || format!("the settings have {} bands, the transfer {}", settings.bands, transfer.bands))?;
+        let aim = match settings.quality {
+            crate::Quality::Error(error) => error.is_finite() && error > 0.0,
+            crate::Quality::Rays(rays) => rays > 0,
+        };
+        self.header(aim, || "the settings ask for no rays or no error".into())?;
+        self.header(settings.light.iter().all(is_amount), || "the light of the settings has a norm that is none".into())
+    }
+
+    fn plan(&self, prt: &Prt) -> Result<(), Error> {
+        let (plan, transfer) = (&prt.plan, &prt.transfer);
+        self.header(plan.channels == transfer.channels, || {
+            format!("the plan has {} channels, the transfer {}", plan.channels, transfer.channels)
+        })?;
+        self.header(plan.bands == transfer.bands, || {
+            format!("the plan has {} bands, the transfer {}", plan.bands, transfer.bands)
+        })?;
+        let counts = plan.dark_receivers <= plan.shadowed_receivers && plan.shadowed_receivers <= plan.receivers;
+        self.header(counts, || "the plan has more shadowed or dark receivers than receivers".into())?;
+        let survey = &plan.survey;
+        let numbers = plan.rows.iter().map(|row| &row.stake).chain(&survey.coverage).chain(&survey.band_norms);
+        self.header(numbers.into_iter().all(is_amount), || "a fact of the plan is no number".into())?;
+        let exists = |m: &crate::MeshPlan| (m.mesh as usize) < prt.meshes.len() && m.shadowed <= m.receivers;
+        self.header(plan.meshes.iter().all(exists), || {
+            "the plan has a mesh that does not exist or does not add up".into()
+        })
+    }
+}
+
+fn is_amount(value: &f32) -> bool {
+    value.is_finite() && *value >= 0.0
 }
 
 fn is_unit(vector: &[f32]) -> bool {

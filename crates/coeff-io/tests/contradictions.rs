@@ -2,7 +2,7 @@
 
 mod sample;
 
-use coeff_io::{Error, Prt, Quality};
+use coeff_io::{BandChoice, Error, Prt, Quality};
 use sample::sample;
 
 /// A name and a change that breaks one rule of `docs/format.md`.
@@ -49,7 +49,15 @@ const BREAKS: &[Break] = &[
     ("a camera of half a turn", |p| p.cameras[0].vertical_fov = std::f32::consts::PI),
     ("a plan of one channel", |p| p.plan.channels = 1),
     ("a plan that decides twice", |p| p.plan.rows[1].effect = p.plan.rows[0].effect),
-    ("settings of other bands", |p| p.settings.bands = 3),
+    ("a plan of three bands", |p| p.plan.bands = 3),
+    ("a plan with a mesh that is not there", |p| p.plan.meshes[0].mesh = 2),
+    ("a mesh with more shadowed receivers than receivers", |p| p.plan.meshes[0].shadowed = 4),
+    ("more dark receivers than shadowed ones", |p| p.plan.dark_receivers = 4),
+    ("a stake that is no number", |p| p.plan.rows[0].stake = f32::NAN),
+    ("a negative norm of a band", |p| p.plan.survey.band_norms[1] = -1.0),
+    ("settings of fewer bands", |p| p.settings.bands = 1),
+    ("settings of exactly other bands", |p| p.settings.band_choice = BandChoice::Exactly),
+    ("a light that is no number", |p| p.settings.light[0] = f32::NAN),
     ("a worst receiver that is not there", |p| p.achieved.worst_receiver = 7),
     ("an error that is no number", |p| p.achieved.error[1] = f32::NAN),
     ("an error to reach that is no number", |p| p.settings.quality = Quality::Error(f32::NAN)),

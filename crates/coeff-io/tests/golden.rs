@@ -1,49 +1,62 @@
-//! Version 1 of the format, byte for byte: a committed file that every later program must read.
+//! Version 2 of the format, byte for byte: a committed file that every later program must read.
 
 mod sample;
 
-use coeff_io::Prt;
+use coeff_io::{Error, Prt};
 
 const VERSION_1: &[u8] = include_bytes!("golden/version1.prt");
+const VERSION_2: &[u8] = include_bytes!("golden/version2.prt");
+
+/// Files of the first version lack what this program needs to know about a bake: they are refused with what to do.
+#[test]
+fn version_1_is_refused_by_name() {
+    let error = Prt::from_bytes(VERSION_1).unwrap_err();
+    let text = error.to_string();
+    assert!(matches!(error, Error::Unsupported(_)), "{text}");
+    assert!(
+        text.contains("version 1") && text.contains("version 2") && text.contains("bake the scene again"),
+        "{text}"
+    );
+}
 
 /// A change here is a change of the format: it needs a new version number, not new bytes.
 #[test]
-fn version_1_is_read() {
-    assert_eq!(Prt::from_bytes(VERSION_1).unwrap(), sample::sample());
+fn version_2_is_read() {
+    assert_eq!(Prt::from_bytes(VERSION_2).unwrap(), sample::sample());
 }
 
 #[test]
-fn version_1_is_written() {
+fn version_2_is_written() {
     let bytes = sample::sample().to_bytes().unwrap();
-    if bytes != VERSION_1 {
-        let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("version1.prt");
+    if bytes != VERSION_2 {
+        let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("version2.prt");
         std::fs::write(&path, &bytes).unwrap();
-        let first = bytes.iter().zip(VERSION_1).position(|(a, b)| a != b).unwrap_or(bytes.len().min(VERSION_1.len()));
+        let first = bytes.iter().zip(VERSION_2).position(|(a, b)| a != b).unwrap_or(bytes.len().min(VERSION_2.len()));
         panic!("the bytes differ from the golden ones from byte {first} on; they were left in {}", path.display());
     }
-    assert!(VERSION_1.len() < 4096);
+    assert!(VERSION_2.len() < 4096);
 }
 
 #[test]
-fn version_1_is_written_can_fail() {
+fn version_2_is_written_can_fail() {
     let mut prt = sample::sample();
     prt.settings.seed += 1;
-    assert_ne!(prt.to_bytes().unwrap(), VERSION_1);
+    assert_ne!(prt.to_bytes().unwrap(), VERSION_2);
 }
 
 /// The places that `docs/format.md` names, read without the crate.
 #[test]
-fn version_1_lies_where_the_description_says() {
-    let u32_at = |at: usize| u32::from_le_bytes(VERSION_1[at..at + 4].try_into().unwrap());
-    let u64_at = |at: usize| u64::from_le_bytes(VERSION_1[at..at + 8].try_into().unwrap());
-    assert_eq!(&VERSION_1[..8], b"\x89PRT\r\n\x1a\n");
-    assert_eq!((u32_at(8), u64_at(16)), (1, VERSION_1.len() as u64));
+fn version_2_lies_where_the_description_says() {
+    let u32_at = |at: usize| u32::from_le_bytes(VERSION_2[at..at + 4].try_into().unwrap());
+    let u64_at = |at: usize| u64::from_le_bytes(VERSION_2[at..at + 8].try_into().unwrap());
+    assert_eq!(&VERSION_2[..8], b"\x89PRT\r\n\x1a\n");
+    assert_eq!((u32_at(8), u64_at(16)), (2, VERSION_2.len() as u64));
     let rows = (0..u32_at(12) as usize).map(|i| 32 + 32 * i);
-    let find = |tag: &[u8]| rows.clone().find(|row| &VERSION_1[*row..*row + 4] == tag).unwrap();
+    let find = |tag: &[u8]| rows.clone().find(|row| &VERSION_2[*row..*row + 4] == tag).unwrap();
     let positions = u64_at(find(b"POSN") + 8) as usize;
     assert_eq!(f32::from_bits(u32_at(positions)), -1.0);
     assert_eq!(f32::from_bits(u32_at(positions + 12)), -0.625);
     let header = u64_at(find(b"HEAD") + 8) as usize;
     assert_eq!(u64_at(header), "relume 0.1.0".len() as u64);
-    assert_eq!(&VERSION_1[header + 8..header + 20], b"relume 0.1.0");
+    assert_eq!(&VERSION_2[header + 8..header + 20], b"relume 0.1.0");
 }

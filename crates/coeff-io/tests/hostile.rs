@@ -185,9 +185,9 @@ fn memory_is_counted_can_fail() {
 #[test]
 fn other_versions_and_conventions_are_unsupported() {
     let mut bytes = sample::sample().to_bytes().unwrap();
-    bytes[8] = 2;
+    bytes[8] = 3;
     sign(&mut bytes);
-    assert!(matches!(refuse(&bytes, "version 2"), Error::Unsupported(_)));
+    assert!(matches!(refuse(&bytes, "version 3"), Error::Unsupported(_)));
     let mut prt = sample::sample();
     prt.convention = "condon-shortley".into();
     assert!(matches!(refuse(&prt.to_bytes().unwrap(), "another convention"), Error::Unsupported(_)));

@@ -1,7 +1,7 @@
 //! Prints how many rays per second one thread traces, beside obvhs' own traversal on the same rays.
 //!
 //! `cargo run --release -p raytrace --example rates [SCENE...]`: files, or nothing for the scenes of the test data.
-//! Work: any hit along 1,024 cosine-distributed directions from each of up to 1,024 vertices, in eight runs along
+//! Work: any hit, then the nearest hit of those blocked, along 1,024 cosine-distributed directions from each of up to 1,024 vertices, in eight runs along
 //! a Morton curve through them as a bake takes them. Times are CPU time where the system tells it.
 
 #![expect(clippy::print_stdout, reason = "printing is its purpose")]
@@ -20,6 +20,7 @@ const ROUNDS: usize = 5;
 const RECEIVERS: usize = 1_024;
 const RUNS: usize = 8;
 const SIDE: u32 = 32;
+const PER_FAN: usize = (SIDE * SIDE) as usize;
 
 /// Triangles, and vertices to trace from with their normals.
 struct Soup {
@@ -31,9 +32,10 @@ struct Soup {
 fn main() {
     let named: Vec<PathBuf> = std::env::args().skip(1).map(PathBuf::from).collect();
     let scenes = if named.is_empty() { data_scenes() } else { named };
-    println!("level {:?}, million rays per second on one thread, medians of {ROUNDS}", Level::best());
-    println!("| scene | triangles | build s | blocked | fan | single | nearest | obvhs CWBVH | fan over obvhs |");
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("levels {:?}, million rays per second on one thread, medians of {ROUNDS}", Level::available());
+    println!("*any* and *nearest* are fans at each level, *one* is ray by ray, obvhs is its CWBVH");
+    println!("| scene | triangles | build s | blocked | any | any, one | obvhs | nearest | nearest, one | obvhs |");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     for path in scenes {
         match scene::load(&path) {
             Ok(scene) => report(&path.file_stem().unwrap_or_default().to_string_lossy(), &Soup::of(&scene)),
@@ -116,46 +118,100 @@ fn rays(receivers: &[(Vec3, Vec3)]) -> [Vec<f32>; 3] {
     each
 }
 
+/// Rays from receivers with the directions that are blocked.
+struct Work {
+    receivers: Vec<(Vec3, Vec3)>,
+    directions: [Vec<f32>; 3],
+    blocked: Vec<u64>,
+}
+
+impl Work {
+    fn new(soup: &Soup, tracer: &Tracer) -> Work {
+        let receivers = soup.receivers();
+        let directions = rays(&receivers);
+        let blocked = vec![0; directions[0].len() / 64];
+        let mut work = Work { receivers, directions, blocked };
+        let mut blocked = Vec::new();
+        work.any(tracer, |bits| blocked.extend_from_slice(bits));
+        work.blocked = blocked;
+        work
+    }
+
+    fn ray(&self, i: usize) -> Ray {
+        let [xs, ys, zs] = &self.directions;
+        Ray::new(self.receivers[i / PER_FAN].0, Vec3::new(xs[i], ys[i], zs[i]))
+    }
+
+    /// Numbers of the rays that are blocked.
+    fn blocked_rays(&self) -> Vec<usize> {
+        (0..self.directions[0].len()).filter(|i| self.blocked[i / 64] >> (i % 64) & 1 == 1).collect()
+    }
+
+    fn fans(&self) -> impl Iterator<Item = (Vec3, [&[f32]; 3], &[u64])> {
+        self.receivers.iter().enumerate().map(|(r, &(origin, _))| {
+            let each = [0, 1, 2].map(|axis| &self.directions[axis][r * PER_FAN..(r + 1) * PER_FAN]);
+            (origin, each, &self.blocked[r * PER_FAN / 64..(r + 1) * PER_FAN / 64])
+        })
+    }
+
+    fn any(&self, tracer: &Tracer, mut take: impl FnMut(&[u64])) {
+        let (mut state, mut bits) = (FanState::new(), vec![0u64; PER_FAN / 64]);
+        for (origin, [xs, ys, zs], _) in self.fans() {
+            tracer.occluded_fan(origin, xs, ys, zs, &|_, _, _| true, &mut state, &mut bits);
+            take(&bits);
+        }
+    }
+
+    fn nearest(&self, tracer: &Tracer) {
+        let (mut state, mut hits) = (FanState::new(), vec![None; PER_FAN]);
+        for (origin, [xs, ys, zs], wanted) in self.fans() {
+            tracer.closest_fan(origin, xs, ys, zs, wanted, &|_, _, _| true, &mut state, &mut hits);
+            std::hint::black_box(&hits);
+        }
+    }
+}
+
 fn report(name: &str, soup: &Soup) {
-    let receivers = soup.receivers();
-    let [xs, ys, zs] = rays(&receivers);
-    let n = (SIDE * SIDE) as usize;
     let start = Instant::now();
     let tracer = Tracer::build(&soup.positions, &soup.triangles, &[]);
     let built = start.elapsed().as_secs_f64();
+    let work = Work::new(soup, &tracer);
     let (bvh, corners) = peer(soup);
-    let ray = |i: usize| Ray::new(receivers[i / n].0, Vec3::new(xs[i], ys[i], zs[i]));
-    let (mut state, mut bits) = (FanState::new(), vec![0u64; n / 64]);
-    let mut blocked = 0u64;
-    let mut seconds = [const { Vec::new() }; 4];
+    let at = |level| Tracer::build(&soup.positions, &soup.triangles, &[]).at_level(level);
+    let tracers: Vec<Tracer> = Level::available().into_iter().filter_map(at).collect();
+    let (all, blocked): (Vec<usize>, _) = ((0..work.directions[0].len()).collect(), work.blocked_rays());
+    let solid = |_, _, _| true;
+    let mut any = vec![Vec::new(); tracers.len() + 2];
+    let mut nearest = any.clone();
     for _ in 0..ROUNDS {
-        blocked = 0;
-        seconds[0].push(timed(|| {
-            for (r, &(origin, _)) in receivers.iter().enumerate() {
-                let span = r * n..(r + 1) * n;
-                let (xs, ys, zs) = (&xs[span.clone()], &ys[span.clone()], &zs[span]);
-                tracer.occluded_fan(origin, xs, ys, zs, &|_, _, _| true, &mut state, &mut bits);
-                blocked += bits.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
-            }
-        }));
-        seconds[1].push(timed(|| count(xs.len(), |i| tracer.occluded(&ray(i), &|_, _, _| true))));
-        seconds[2].push(timed(|| count(xs.len(), |i| tracer.closest(&ray(i), &|_, _, _| true).is_some())));
-        seconds[3].push(timed(|| count(xs.len(), |i| peer_blocked(&bvh, &corners, &ray(i)))));
+        for (k, tracer) in tracers.iter().enumerate() {
+            any[k].push(timed(|| work.any(tracer, |bits| _ = std::hint::black_box(bits[0]))));
+            nearest[k].push(timed(|| work.nearest(tracer)));
+        }
+        let k = tracers.len();
+        any[k].push(timed(|| count(&all, |i| tracer.occluded(&work.ray(i), &solid))));
+        any[k + 1].push(timed(|| count(&all, |i| peer_blocked(&bvh, &corners, &work.ray(i)))));
+        nearest[k].push(timed(|| count(&blocked, |i| tracer.closest(&work.ray(i), &solid).is_some())));
+        nearest[k + 1].push(timed(|| count(&blocked, |i| peer_nearest(&bvh, &corners, &work.ray(i)))));
     }
-    let rates = seconds.map(|mut s| {
-        s.sort_by(f64::total_cmp);
-        xs.len() as f64 * 1.0e-6 / s[ROUNDS / 2]
-    });
     println!(
-        "| {name} | {} | {built:.2} | {:.0} % | {:.1} | {:.1} | {:.1} | {:.1} | {:.2} |",
+        "| {name} | {} | {built:.2} | {:.0} % | {} | {} |",
         soup.triangles.len(),
-        100.0 * blocked as f64 / xs.len() as f64,
-        rates[0],
-        rates[1],
-        rates[2],
-        rates[3],
-        rates[0] / rates[3],
+        100.0 * blocked.len() as f64 / all.len() as f64,
+        rates(any, all.len()),
+        rates(nearest, blocked.len()),
     );
+}
+
+/// Million rays per second from the seconds of each kind: the levels in one cell, then the others.
+fn rates(seconds: Vec<Vec<f64>>, rays: usize) -> String {
+    let rate = |mut s: Vec<f64>| {
+        s.sort_by(f64::total_cmp);
+        format!("{:.2}", rays as f64 * 1.0e-6 / s[ROUNDS / 2])
+    };
+    let rates: Vec<String> = seconds.into_iter().map(rate).collect();
+    let (levels, others) = rates.split_at(rates.len() - 2);
+    format!("{} | {}", levels.join(" / "), others.join(" | "))
 }
 
 /// obvhs' best tree and its triangles in the tree's sequence.
@@ -173,8 +229,14 @@ fn peer_blocked(bvh: &CwBvh, corners: &[RtTriangle], ray: &Ray) -> bool {
     !bvh.ray_traverse_miss(ray, |ray, i| corners[i].intersect(ray))
 }
 
-fn count(n: usize, hit: impl Fn(usize) -> bool) {
-    std::hint::black_box((0..n).filter(|&i| hit(i)).count());
+fn peer_nearest(bvh: &CwBvh, corners: &[RtTriangle], ray: &Ray) -> bool {
+    let ray = obvhs::ray::Ray::new_inf(ray.origin.into(), ray.direction.into());
+    let mut hit = obvhs::ray::RayHit::none();
+    bvh.ray_traverse(ray, &mut hit, |ray, i| corners[i].intersect(ray))
+}
+
+fn count(rays: &[usize], hit: impl Fn(usize) -> bool) {
+    std::hint::black_box(rays.iter().filter(|&&i| hit(i)).count());
 }
 
 /// Seconds of CPU that this thread takes for some work.

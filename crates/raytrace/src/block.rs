@@ -6,10 +6,10 @@ use crate::tree::{BLOCK, Block};
 use glam::Vec3;
 
 /// Bound on the rounding of an edge product over its largest term (64 units of 2^-24; at most 48 arise).
-const SLACK: f32 = 3.814_697_3e-6;
+pub(crate) const SLACK: f32 = 3.814_697_3e-6;
 
 /// Added to every bound for products that vanish below the smallest normal number.
-const UNDERFLOW: f32 = 1.0e-40;
+pub(crate) const UNDERFLOW: f32 = 1.0e-40;
 
 /// For each triangle the normals of the planes through the origin and an edge, turned so that a direction meets the
 /// triangle where all three products with it are positive, and what rounding can do to a product.
@@ -26,15 +26,16 @@ impl Seen {
     pub(crate) const NOTHING: Seen = Seen { normals: [[0.0; BLOCK]; 9], slack: [[-1.0; BLOCK]; 3] };
 }
 
-type Point<F> = [F; 3];
+/// Three numbers per lane.
+pub(crate) type Point<F> = [F; 3];
 
 #[inline(always)]
-fn sub<F: Lanes>(a: Point<F>, b: Point<F>) -> Point<F> {
+pub(crate) fn sub<F: Lanes>(a: Point<F>, b: Point<F>) -> Point<F> {
     [a[0].sub(b[0]), a[1].sub(b[1]), a[2].sub(b[2])]
 }
 
 #[inline(always)]
-fn cross<F: Lanes>(a: Point<F>, b: Point<F>) -> Point<F> {
+pub(crate) fn cross<F: Lanes>(a: Point<F>, b: Point<F>) -> Point<F> {
     [a[1].mul(b[2]).sub(a[2].mul(b[1])), a[2].mul(b[0]).sub(a[0].mul(b[2])), a[0].mul(b[1]).sub(a[1].mul(b[0]))]
 }
 
@@ -44,7 +45,7 @@ pub(crate) fn dot<F: Lanes>(a: Point<F>, b: Point<F>) -> F {
 }
 
 #[inline(always)]
-fn size<F: Lanes>(a: Point<F>) -> F {
+pub(crate) fn size<F: Lanes>(a: Point<F>) -> F {
     a[0].abs().max(a[1].abs()).max(a[2].abs())
 }
 
@@ -72,7 +73,7 @@ fn corner<F: Lanes>(block: &Block, k: usize, from: Point<F>) -> Point<F> {
 
 /// The corners from a point.
 #[inline(always)]
-fn corners<F: Lanes>(block: &Block, origin: Vec3) -> [Point<F>; 3] {
+pub(crate) fn corners<F: Lanes>(block: &Block, origin: Vec3) -> [Point<F>; 3] {
     let from = [F::splat(origin.x), F::splat(origin.y), F::splat(origin.z)];
     [corner(block, 0, from), corner(block, 1, from), corner(block, 2, from)]
 }

@@ -11,26 +11,48 @@ use glam::Vec3;
 /// Bound on the relative error of the determinant in double precision: five roundings at most, doubled for safety.
 const ROUNDING: f64 = 10.0 * f64::EPSILON;
 
-/// Volume of the parallelepiped on three vectors: the sign is exact, the value good to double precision at least
-/// relative to its largest product.
-pub(crate) fn volume(a: Vec3, b: Vec3, c: Vec3) -> f64 {
-    let [ax, ay, az] = a.to_array().map(f64::from);
-    let [bx, by, bz] = b.to_array().map(f64::from);
-    let [cx, cy, cz] = c.to_array().map(f64::from);
+/// Three numbers in double precision.
+pub(crate) type Wide = [f64; 3];
+
+/// The volume in double precision, and the sum of its products by amount.
+#[inline(always)]
+pub(crate) fn quick_volume([ax, ay, az]: Wide, [bx, by, bz]: Wide, [cx, cy, cz]: Wide) -> (f64, f64) {
     // Products of two singles fit a double without rounding.
     let (yz, zy) = (by * cz, bz * cy);
     let (zx, xz) = (bz * cx, bx * cz);
     let (xy, yx) = (bx * cy, by * cx);
     let value = ax * (yz - zy) + ay * (zx - xz) + az * (xy - yx);
     let size = ax.abs() * (yz.abs() + zy.abs()) + ay.abs() * (zx.abs() + xz.abs()) + az.abs() * (xy.abs() + yx.abs());
-    if value.abs() > ROUNDING * size {
-        return value;
+    (value, size)
+}
+
+/// Whether the sign of a quick volume is beyond doubt.
+#[inline(always)]
+pub(crate) fn is_certain((value, size): (f64, f64)) -> bool {
+    value.abs() > ROUNDING * size
+}
+
+/// Volume of the parallelepiped on three vectors: the sign is exact, the value good to double precision at least
+/// relative to its largest product.
+pub(crate) fn volume(a: Vec3, b: Vec3, c: Vec3) -> f64 {
+    let wide = |v: Vec3| [f64::from(v.x), f64::from(v.y), f64::from(v.z)];
+    let (a, b, c) = (wide(a), wide(b), wide(c));
+    let quick = quick_volume(a, b, c);
+    if is_certain(quick) {
+        return quick.0;
     }
-    if size == 0.0 {
+    if quick.1 == 0.0 {
         // Flat in an axis plane through the origin, as walls and floors often are.
         return 0.0;
     }
-    expansion_sum([(ax, yz), (-ax, zy), (ay, zx), (-ay, xz), (az, xy), (-az, yx)])
+    close_volume(a, b, c)
+}
+
+/// The volume where double precision leaves its sign in doubt.
+#[cold]
+fn close_volume([ax, ay, az]: Wide, [bx, by, bz]: Wide, [cx, cy, cz]: Wide) -> f64 {
+    let terms = [(ax, by * cz), (-ax, bz * cy), (ay, bz * cx), (-ay, bx * cz), (az, bx * cy), (-az, by * cx)];
+    expansion_sum(terms)
 }
 
 /// Sum of six products of a single and a double of at most 48 bits, with the exact sign.

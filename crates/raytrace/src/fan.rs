@@ -1,29 +1,24 @@
 //! Many rays from one point: packets of neighbours in the list.
 
+use crate::closest_fan::ClosestFan;
 use crate::group::{Directions, Group};
 use crate::lanes::{Lanes, Path, Portable};
 use crate::level::{Job, dispatch};
-use crate::nearest::{Best, nearest};
-use crate::packet::{Many, Packet, Scratch, WIDEST, Walk, alone};
+use crate::packet::{Packet, WIDEST};
 use crate::ray::{Hit, LARGEST, Line};
-use crate::sight::{Occluders, PER_CELL};
+use crate::scratch::Scratch;
+use crate::screen::{Screen, alone};
+use crate::sight::Occluders;
 use crate::tracer::Tracer;
 use crate::tree::{Child, Tree};
-use crate::walk::{Apart, Solid, Walker};
+use crate::walk::{Solid, Walker};
 use glam::Vec3;
-
-/// Directions with a component below this go alone: its reciprocal is too large.
-const STEEPEST: f32 = 1.0e-18;
-
-/// Components of a unit direction, and sums of three of them, stay below these.
-const LARGEST_UNIT: f32 = 1.001;
-const LONGEST: f32 = 1.74;
 
 /// What a thread keeps between fans. It changes how fast answers come, never what they are.
 #[derive(Debug)]
 pub struct FanState {
-    scratch: Scratch,
-    group: Group,
+    pub(crate) scratch: Scratch,
+    pub(crate) group: Group,
 }
 
 impl FanState {
@@ -61,8 +56,7 @@ impl Tracer {
         assert!(xs.len() == ys.len() && xs.len() == zs.len(), "one x, y and z for each direction");
         assert!(blocked.len() * 64 >= xs.len(), "one bit for each direction");
         blocked.fill(0);
-        let sane = origin.is_finite() && origin.abs().max_element() <= 2.0 * LARGEST;
-        if self.tree.nodes.is_empty() || !sane {
+        if !self.sees(origin) {
             return;
         }
         let directions = Directions { origin, each: [xs, ys, zs] };
@@ -90,54 +84,16 @@ impl Tracer {
         assert!(hits.len() == xs.len(), "one hit for each direction");
         assert!(wanted.len() * 64 >= xs.len(), "one bit for each direction");
         hits.fill(None);
-        if self.tree.nodes.is_empty() {
+        if !self.sees(origin) {
             return;
         }
         let directions = Directions { origin, each: [xs, ys, zs] };
-        let scratch = &mut state.scratch;
-        dispatch(self.level, ClosestFan { tree: &self.tree, directions, wanted, solid, scratch, hits });
+        dispatch(self.level, ClosestFan { tree: &self.tree, directions, wanted, solid, state, hits });
     }
-}
 
-/// [`Tracer::closest_fan`] at one level.
-struct ClosestFan<'a> {
-    tree: &'a Tree,
-    directions: Directions<'a>,
-    wanted: &'a [u64],
-    solid: Solid<'a>,
-    scratch: &'a mut Scratch,
-    hits: &'a mut [Option<Hit>],
-}
-
-impl Job for ClosestFan<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<P: Path>(self) {
-        let ClosestFan { tree, directions, wanted, solid, scratch, hits } = self;
-        scratch.start(tree, directions.origin);
-        let Scratch { sights, occluders, stack, .. } = scratch;
-        let asked = (0..hits.len()).filter(|i| wanted[i / 64] >> (i % 64) & 1 == 1);
-        for i in asked {
-            let Some(line) = Line::new(&directions.ray(i)) else {
-                continue;
-            };
-            let walker = Walker::new(tree, line);
-            // What blocked rays that went this way is a good first guess: nothing beyond it is visited.
-            let cell = Occluders::cell(walker.octant, line.direction.to_array());
-            let mut guess = Best::default();
-            for index in 0..PER_CELL {
-                if let Some((block, lane)) = occluders.get(cell, index) {
-                    guess.improve::<P>(tree, block, 1 << lane, &line, solid, sights);
-                }
-            }
-            let best = nearest::<P>(tree, &walker, guess, stack, solid, sights);
-            hits[i] = best.hit;
-            let (block, lane) = best.place;
-            if best.hit.is_some() && tree.blocks[block].masked >> lane & 1 == 0 {
-                occluders.keep(cell, block, lane);
-            }
-        }
+    /// Whether there is anything to hit, and a point to look from.
+    fn sees(&self, origin: Vec3) -> bool {
+        !self.tree.nodes.is_empty() && origin.is_finite() && origin.abs().max_element() <= 2.0 * LARGEST
     }
 }
 
@@ -160,54 +116,16 @@ impl Job for OccludedFan<'_> {
         scratch.start(tree, directions.origin);
         for first in (0..directions.len()).step_by(P::Rays::N) {
             group.fill::<P::Rays>(&directions, first);
-            let stopped = match packet::<P::Rays>(tree, directions.origin, &group.directions) {
+            let stopped = match Packet::<P::Rays>::of(tree, directions.origin, &group.directions) {
                 Some(packet) => {
                     let cell = Occluders::cell(packet.octant, group.middle::<P::Rays>());
-                    Walk { tree, packet, solid, cell }.blocked::<P>(group.alive, scratch)
+                    Screen { tree, packet, solid, cell }.blocked::<P>(group.alive, scratch)
                 }
                 None => strangers(tree, &directions, group, solid, scratch),
             };
             group.mark(stopped, blocked);
         }
     }
-}
-
-/// A packet of a group; None where a ray goes along an axis or is no unit direction.
-#[inline(always)]
-fn packet<'a, R: Lanes>(tree: &Tree, origin: Vec3, each: &'a [Many; 3]) -> Option<Packet<'a, R>> {
-    let [x, y, z] = each;
-    let direction = [R::load(x), R::load(y), R::load(z)];
-    let least = Vec3::new(direction[0].lowest(), direction[1].lowest(), direction[2].lowest());
-    let most = Vec3::new(direction[0].highest(), direction[1].highest(), direction[2].highest());
-    let size = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
-    let (steepest, longest) = (size[0].min(size[1]).min(size[2]), size[0].add(size[1]).add(size[2]));
-    // Both false where a component is not a number, so that the ranges hold.
-    let usual = steepest.above(R::splat(STEEPEST)) & R::splat(LONGEST).above(longest);
-    if usual != (1u32 << R::N) - 1 || least.abs().max(most.abs()).max_element() > LARGEST_UNIT {
-        return None;
-    }
-    let one = R::splat(1.0);
-    let inverse = [one.div(direction[0]), one.div(direction[1]), one.div(direction[2])];
-    let mut inverse_each = [[0.0; WIDEST]; 3];
-    for axis in 0..3 {
-        inverse[axis].store(&mut inverse_each[axis]);
-    }
-    let (negative, positive) = (least.cmplt(Vec3::ZERO).bitmask(), most.cmpgt(Vec3::ZERO).bitmask());
-    let mixed = (negative & positive) as usize;
-    // Where all are of one sign the reciprocals of the bounds bound the reciprocals, rounding included.
-    let (low, high) = (most.recip(), least.recip());
-    Some(Packet {
-        direction,
-        inverse,
-        each,
-        inverse_each,
-        octant: negative as usize & !mixed,
-        mixed,
-        apart: Apart::new(tree, origin),
-        least,
-        most,
-        range: [(low.x, high.x), (low.y, high.y), (low.z, high.z)],
-    })
 }
 
 /// Rays that no packet takes: one by one.

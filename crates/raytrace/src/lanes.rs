@@ -27,6 +27,8 @@ pub(crate) trait Lanes: Copy {
     fn above(self, other: Self) -> u32;
     /// `yes` where a < b, else `no`.
     fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self;
+    /// `yes` where the lane's bit is set, else `no`.
+    fn choose(bits: u32, yes: Self, no: Self) -> Self;
 }
 
 /// What a path provides: rows of four for triangles, of eight for boxes, and as wide as pays for rays.
@@ -123,6 +125,11 @@ impl<const N: usize> Lanes for Row<N> {
     fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self {
         Row(std::array::from_fn(|i| if a.0[i] < b.0[i] { yes.0[i] } else { no.0[i] }))
     }
+
+    #[inline(always)]
+    fn choose(bits: u32, yes: Self, no: Self) -> Self {
+        Row(std::array::from_fn(|i| if bits >> i & 1 == 1 { yes.0[i] } else { no.0[i] }))
+    }
 }
 
 /// Two rows in one.
@@ -201,6 +208,11 @@ impl<L: Lanes> Lanes for Pair<L> {
     #[inline(always)]
     fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self {
         Pair(L::where_less(a.0, b.0, yes.0, no.0), L::where_less(a.1, b.1, yes.1, no.1))
+    }
+
+    #[inline(always)]
+    fn choose(bits: u32, yes: Self, no: Self) -> Self {
+        Pair(L::choose(bits, yes.0, no.0), L::choose(bits >> L::N, yes.1, no.1))
     }
 }
 

@@ -1,28 +1,29 @@
 //! What one origin has seen of the triangles: prepared blocks, and the triangles that blocked its last rays.
 
 use crate::block::{Seen, candidates, see};
+use crate::depth::Depths;
 use crate::lanes::Lanes;
 use crate::ray::Line;
 use crate::tree::Tree;
 use crate::walk::View;
 use glam::Vec3;
 
-/// Blocks remembered at once (48 KiB: most of what one receiver's rays touch again and again).
+/// Blocks remembered at once (48 KiB, and 24 KiB for depths: most of what one receiver's rays touch again and again).
 const REMEMBERED: usize = 256;
 
 /// Blocks prepared for the origin of a fan, by the low bits of their number.
 #[derive(Debug)]
 pub(crate) struct Sights {
-    /// Fan and block in each place.
-    keys: Vec<u64>,
-    seen: Vec<Seen>,
+    edges: Memory<Seen>,
+    depths: Memory<Depths>,
     fan: u64,
     pub(crate) origin: Vec3,
 }
 
 impl Sights {
     pub(crate) fn new() -> Sights {
-        Sights { keys: vec![0; REMEMBERED], seen: vec![Seen::NOTHING; REMEMBERED], fan: 0, origin: Vec3::ZERO }
+        let (edges, depths) = (Memory::new(Seen::NOTHING), Memory::new(Depths::NOTHING));
+        Sights { edges, depths, fan: 0, origin: Vec3::ZERO }
     }
 
     /// Forgets everything: a new origin.
@@ -31,23 +32,55 @@ impl Sights {
         self.fan += 1;
         if self.fan >> 32 != 0 {
             self.fan = 1;
-            self.keys.fill(0);
+            self.edges.keys.fill(0);
+            self.depths.keys.fill(0);
         }
         self.origin = origin;
     }
-}
 
-impl Sights {
     /// A block as the origin sees it.
     #[inline(always)]
     pub(crate) fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
-        let place = block % REMEMBERED;
-        let key = self.fan << 32 | block as u64;
-        if self.keys[place] != key {
-            self.keys[place] = key;
-            self.seen[place] = see::<F>(&tree.blocks[block], self.origin);
+        let (place, known) = self.edges.find(self.fan, block);
+        if !known {
+            self.edges.values[place] = see::<F>(&tree.blocks[block], self.origin);
         }
-        &self.seen[place]
+        &self.edges.values[place]
+    }
+
+    /// A block as the origin sees it, and how far off it is.
+    #[inline(always)]
+    pub(crate) fn view_in_depth<F: Lanes>(&mut self, tree: &Tree, block: usize) -> (&Seen, &Depths) {
+        let (place, known) = self.depths.find(self.fan, block);
+        if !known {
+            self.depths.values[place] = Depths::of::<F>(&tree.blocks[block], self.origin);
+        }
+        self.view::<F>(tree, block);
+        (&self.edges.values[place], &self.depths.values[place])
+    }
+}
+
+/// The latest of what was worked out for blocks and the origin of one fan.
+#[derive(Debug)]
+struct Memory<T> {
+    /// Fan and block in each place.
+    keys: Vec<u64>,
+    values: Vec<T>,
+}
+
+impl<T: Copy> Memory<T> {
+    fn new(nothing: T) -> Memory<T> {
+        Memory { keys: vec![0; REMEMBERED], values: vec![nothing; REMEMBERED] }
+    }
+
+    /// The place of a block, and whether it holds what was worked out for it; whoever asks must put it there else.
+    #[inline(always)]
+    fn find(&mut self, fan: u64, block: usize) -> (usize, bool) {
+        let place = block % REMEMBERED;
+        let key = fan << 32 | block as u64;
+        let known = self.keys[place] == key;
+        self.keys[place] = key;
+        (place, known)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::build::build;
 use crate::lanes::Path;
 use crate::level::{Job, Level, dispatch};
-use crate::nearest::{Best, nearest};
+use crate::nearest::nearest;
 use crate::ray::{Hit, Line, Ray};
 use crate::tree::{Child, Tree};
 use crate::walk::{Fresh, Solid, Walker, blocked};
@@ -91,7 +91,7 @@ impl Job for Closest<'_> {
     #[inline(always)]
     fn run<P: Path>(self) -> Option<Hit> {
         let walker = Walker::new(self.tree, self.line);
-        nearest::<P>(self.tree, &walker, Best::default(), self.stack, self.solid, &mut Fresh).hit
+        nearest::<P>(self.tree, &walker, self.stack, self.solid)
     }
 }
 

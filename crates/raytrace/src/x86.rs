@@ -11,7 +11,7 @@ use std::arch::x86_64::*;
 /// Implements the operations for one width of register before AVX-512.
 macro_rules! lanes {
     ($row:ident, $register:ty, $n:expr, $splat:ident, $load:ident, $store:ident, $add:ident, $sub:ident, $mul:ident,
-     $div:ident, $min:ident, $max:ident, $andnot:ident, $above:expr, $bits:ident, $blend:ident, $lowest:ident, $highest:ident) => {
+     $div:ident, $min:ident, $max:ident, $andnot:ident, $above:expr, $bits:ident, $blend:ident, $mask:ident, $lowest:ident, $highest:ident) => {
         /// A register of numbers.
         #[derive(Clone, Copy)]
         pub(crate) struct $row($register);
@@ -90,6 +90,11 @@ macro_rules! lanes {
             fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self {
                 unsafe { $row($blend(no.0, yes.0, $above(b.0, a.0))) }
             }
+
+            #[inline(always)]
+            fn choose(bits: u32, yes: Self, no: Self) -> Self {
+                unsafe { $row($blend(no.0, yes.0, $mask(bits))) }
+            }
         }
     };
 }
@@ -111,6 +116,7 @@ lanes!(
     _mm_cmp_ps::<_CMP_GT_OQ>,
     _mm_movemask_ps,
     _mm_blendv_ps,
+    mask_of_4,
     lowest_of_4,
     highest_of_4
 );
@@ -132,6 +138,7 @@ lanes!(
     _mm256_cmp_ps::<_CMP_GT_OQ>,
     _mm256_movemask_ps,
     _mm256_blendv_ps,
+    mask_of_8,
     lowest_of_8,
     highest_of_8
 );
@@ -156,6 +163,24 @@ macro_rules! fold {
 
 fold!(lowest_of_4, lowest_of_8, _mm_min_ps);
 fold!(highest_of_4, highest_of_8, _mm_max_ps);
+
+/// A register whose lanes have all bits set where the lane's bit is set.
+#[inline(always)]
+unsafe fn mask_of_4(bits: u32) -> __m128 {
+    unsafe {
+        let each = _mm_setr_epi32(1, 2, 4, 8);
+        _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(bits as i32), each), each))
+    }
+}
+
+/// The same for eight lanes.
+#[inline(always)]
+unsafe fn mask_of_8(bits: u32) -> __m256 {
+    unsafe {
+        let each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits as i32), each), each))
+    }
+}
 
 /// Sixteen numbers.
 #[derive(Clone, Copy)]
@@ -234,6 +259,11 @@ impl Lanes for Row16 {
     #[inline(always)]
     fn where_less(a: Self, b: Self, yes: Self, no: Self) -> Self {
         unsafe { Row16(_mm512_mask_blend_ps(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a.0, b.0), no.0, yes.0)) }
+    }
+
+    #[inline(always)]
+    fn choose(bits: u32, yes: Self, no: Self) -> Self {
+        unsafe { Row16(_mm512_mask_blend_ps(bits as u16, no.0, yes.0)) }
     }
 }
 

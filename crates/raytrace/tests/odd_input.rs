@@ -84,3 +84,16 @@ fn nothing_above_agrees_with_a_loop() {
     }
     assert!(above > 100 && below > 100, "both answers occur: {above} {below}");
 }
+
+/// A square in y = 0 touches what rests on it at its foot; seen from above it is only the own ground.
+#[test]
+fn ground_that_is_touched_is_faced() {
+    let corners = [vec3(-1.0, 0.0, 1.0), vec3(1.0, 0.0, 1.0), vec3(0.0, 0.0, -1.0)];
+    let up = Tracer::build(&corners, &[[0, 1, 2]], &[]);
+    let down = Tracer::build(&corners, &[[0, 2, 1]], &[]);
+    assert!(up.anything_faced(Vec3::ZERO, Vec3::NEG_Y, 1e-4), "the foot of a body on the ground");
+    assert!(up.anything_faced(vec3(0.0, -0.9e-4, 0.0), Vec3::NEG_Y, 1e-4), "sunk by less than the slack");
+    assert!(!up.anything_faced(vec3(0.0, -1.2e-4, 0.0), Vec3::NEG_Y, 1e-4), "can fail: sunk by more");
+    assert!(!up.anything_faced(Vec3::ZERO, Vec3::Y, 1e-4), "a point of the ground itself");
+    assert!(!down.anything_faced(Vec3::ZERO, Vec3::NEG_Y, 1e-4), "ground that faces the other way");
+}

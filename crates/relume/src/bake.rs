@@ -1,12 +1,14 @@
 //! `relume bake`: a scene becomes a `.prt` file.
 
-use crate::console::Console;
+use crate::console::{Console, Progress};
+use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
-use crate::source::SceneOptions;
+use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
-use crate::{interrupt, output};
+use crate::{interrupt, output, timed};
 use anyhow::{Context, Result};
 use coeff_io::{Prt, Quality};
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -14,9 +16,11 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   relume bake builtin:atrium -o atrium.prt
   relume bake house.glb -o house.prt --bands 6 --error 0.005
+  relume bake atrium.glb -o atrium.prt --bands auto:8 --probe evening.hdr
   relume bake scan.obj -o scan.prt --rays 256 --bounces 0 --memory 2G
+  relume bake city.glb -o city.prt --time 10m
 
-Ctrl-C ends a bake; the file is written when all is done, never in part.";
+Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest result so far stays.";
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -27,26 +31,46 @@ pub(crate) struct Options {
     output: PathBuf,
     #[command(flatten)]
     bake: BakeOptions,
+    /// The light that the result is meant for: with --bands auto, bands that it cannot show are left out.
+    #[arg(long, value_name = "PROBE", value_parser = source::probe)]
+    probe: Option<ProbeSource>,
+    #[command(flatten)]
+    read: ReadOptions,
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
-    let settings = options.bake.settings()?;
+    let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
+    let settings = options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))?;
     output::check(&options.output)?;
     let scene = options.scene.load(console)?;
     interrupt::watch()?;
     let began = Instant::now();
-    let prt = {
-        let progress = console.progress();
-        bake::bake(&scene, &settings, &|now| {
-            progress.set(&now.stage.to_string(), now.done, now.total);
-            interrupt::flow()
-        })
+    let path = &options.output;
+    let write = |prt: &Prt| prt.write(path).with_context(|| format!("cannot write {}", path.display()));
+    let prt = match settings.time {
+        Some(seconds) => timed::bake(&scene, &settings, Duration::from_secs_f32(seconds), &write, console)?,
+        None => {
+            let prt = bake::bake(&scene, &settings, &watched(&console.progress(), None)).map_err(fault)?;
+            write(&prt)?;
+            prt
+        }
     };
-    let prt = prt.map_err(fault)?;
-    let took = began.elapsed();
-    prt.write(&options.output).with_context(|| format!("cannot write {}", options.output.display()))?;
-    report(&prt, took, options, console);
+    report(&prt, began.elapsed(), options, console);
     Ok(())
+}
+
+/// Shows the progress of a bake, and stops it at Ctrl-C or when its time is up.
+pub(crate) fn watched<'a>(
+    progress: &'a Progress,
+    deadline: Option<Instant>,
+) -> impl Fn(&bake::Progress) -> ControlFlow<()> + Sync + 'a {
+    move |now| {
+        progress.set(&now.stage.to_string(), now.done, now.total);
+        if deadline.is_some_and(|deadline| Instant::now() > deadline) {
+            return ControlFlow::Break(());
+        }
+        interrupt::flow()
+    }
 }
 
 /// A setting out of range is wrong usage; everything else is a failure.
@@ -66,7 +90,14 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         rays as f64 / seconds.max(1e-9) * 1e-6,
         achieved.bounces
     ));
-    console.notice(&format!("relative error: {}", error(prt.settings.quality, achieved.error)));
+    let asked = match prt.settings.quality {
+        Quality::Error(asked) => format!("asked for {asked:.4}, "),
+        Quality::Rays(_) => String::new(),
+    };
+    console.notice(&format!("relative error: {asked}{}", error(prt.settings.quality, achieved.error)));
+    if achieved.error[2] > 0.0 {
+        console.notice(&format!("worst {}", worst_place(prt)));
+    }
     let repairs = achieved.repairs;
     if repairs.inside + repairs.bad_normals > 0 {
         let (inside, normals) = (repairs.inside, repairs.bad_normals);
@@ -76,6 +107,15 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         ));
     }
     console.notice(&format!("wrote {}", options.output.display()));
+}
+
+/// Where the receiver with the worst error stands.
+pub(crate) fn worst_place(prt: &Prt) -> String {
+    let id = prt.achieved.worst_receiver;
+    let [x, y, z] = prt.geometry.positions.get(id as usize).copied().unwrap_or_default();
+    let of = |mesh: &&coeff_io::Mesh| (mesh.first_vertex..mesh.first_vertex + mesh.vertices).contains(&id);
+    let mesh = prt.meshes.iter().find(of).map_or("", |mesh| mesh.name.as_str());
+    format!("at receiver {id}, ({x:.4}, {y:.4}, {z:.4}) on '{mesh}'")
 }
 
 /// The achieved error in words; a fixed number of rays is traced without an estimate.

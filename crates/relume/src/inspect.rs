@@ -1,8 +1,9 @@
 //! `relume inspect`: what a baked file holds, and whether it is sound.
 
+use crate::columns::{Columns, Side, bytes, count};
 use crate::console::Console;
 use anyhow::{Context, Result, bail};
-use coeff_io::{Chunk, Inspection, Kind};
+use coeff_io::{Chunk, EffectCost, Inspection, Kind};
 use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -13,6 +14,16 @@ Examples:
   relume inspect atrium.prt --json | jq .header.achieved
 
 Fails when a checksum is wrong or the file contradicts itself.";
+
+const COLUMNS: Columns = Columns(&[
+    (15, Side::Left),
+    (22, Side::Left),
+    (7, Side::Right),
+    (7, Side::Right),
+    (8, Side::Right),
+    (8, Side::Right),
+    (38, Side::Left),
+]);
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -37,7 +48,10 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         bail!("{}: damaged in {}: get the file again or bake anew", path.display(), damaged.join(", "));
     }
     // Sound bytes can still contradict each other.
-    coeff_io::Prt::read(path).with_context(about)?;
+    let prt = coeff_io::Prt::read(path).with_context(about)?;
+    if prt.achieved.error[2] > 0.0 && !options.json {
+        console.print(&format!("worst error {}\n", crate::bake::worst_place(&prt)))?;
+    }
     Ok(())
 }
 
@@ -70,11 +84,8 @@ fn vertices(seen: &Inspection) -> u64 {
 fn as_text(seen: &Inspection, sums: &[u32]) -> Result<String> {
     let mut text = String::new();
     write_header(&mut text, seen)?;
-    writeln!(text, "\nplan")?;
-    for row in &seen.header.plan.rows {
-        let simulate = if row.simulate { "yes" } else { "no" };
-        writeln!(text, "  {:<16} {simulate:<4} {}", format!("{:?}", row.effect), row.reason)?;
-    }
+    writeln!(text)?;
+    write_effects(&mut text, seen);
     writeln!(text, "\nchunks           offset        bytes  crc32")?;
     for (chunk, sum) in seen.chunks.iter().zip(sums) {
         let name = if chunk.kind == Kind::Picture {
@@ -86,6 +97,22 @@ fn as_text(seen: &Inspection, sums: &[u32]) -> Result<String> {
         writeln!(text, "  {name:<9} {:>12} {:>12}  {:08x}{state}", chunk.offset, chunk.length, chunk.crc32)?;
     }
     Ok(text)
+}
+
+/// What was decided, and what it took and saved.
+fn write_effects(text: &mut String, seen: &Inspection) {
+    let (plan, achieved) = (&seen.header.plan, &seen.header.achieved);
+    text.push_str(&COLUMNS.row(&["effect", "decision", "rays", "saved", "bytes", "saved", "reason"]));
+    for row in &plan.rows {
+        let cost = achieved.effects.iter().find(|cost| cost.effect == row.effect);
+        let of = |value: fn(&EffectCost) -> u64| cost.map_or(0, value);
+        let rays = [count(of(|c| c.rays)), count(of(|c| c.saved_rays))];
+        let size = [bytes(of(|c| c.bytes)), bytes(of(|c| c.saved_bytes))];
+        let cells = [row.effect.name(), &row.decision, &rays[0], &rays[1], &size[0], &size[1], &row.reason];
+        text.push_str(&COLUMNS.row(&cells));
+    }
+    let survey = &plan.survey;
+    text.push_str(&format!("survey before the bake: {} rays for {} receivers\n", survey.rays, survey.receivers));
 }
 
 fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
@@ -105,7 +132,13 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
     row("transfer", format!("{} bands, {} channel(s)", header.bands, header.channels))?;
     row(
         "asked for",
-        format!("{:?}, bounces {:?}, effects {:?}", settings.quality, settings.bounces, settings.effects),
+        format!(
+            "{:?}{}, bounces {:?}, effects {:?}",
+            settings.quality,
+            settings.time.map_or(String::new(), |seconds| format!(" within {seconds} s")),
+            settings.bounces,
+            settings.effects
+        ),
     )?;
     row("sampler", format!("{:?}, seed {}, memory {} bytes", settings.sampler, settings.seed, settings.memory))?;
     let worst = achieved.worst_receiver;

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod bake;
+mod columns;
 mod console;
 mod cost;
 mod draw;
@@ -10,6 +11,7 @@ mod inspect;
 mod interrupt;
 mod lens;
 mod light;
+mod light_facts;
 mod list;
 mod output;
 mod picture;
@@ -18,6 +20,7 @@ mod reference;
 mod render;
 mod settings;
 mod source;
+mod timed;
 mod usage;
 
 use arguments::{Arguments, Command};

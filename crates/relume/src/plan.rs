@@ -1,126 +1,184 @@
 //! `relume plan`: which effects a scene calls for and why, and what each will cost; bakes nothing.
 
+use crate::columns::{Columns, Side, bytes, count, seconds, wrap};
 use crate::console::Console;
+use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use anyhow::Result;
-use coeff_io::{Plan, PlanRow, Settings};
-use probe_io::Environment;
+use bake::Price;
+use coeff_io::{Effect, Plan, PlanRow, Settings};
+use scene::Scene;
 use serde_json::json;
-use sh_math::{Bands, Rgb};
-use std::fmt::Write;
+use std::time::Instant;
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   relume plan house.glb
-  relume plan house.glb --probe kitchen.hdr --json
-  relume plan builtin:atrium --effects all";
+  relume plan house.glb --probe kitchen.hdr --bands auto --json
+  relume plan builtin:atrium --effects all --meshes
 
-/// Bands that the light is measured with.
-const LIGHT_BANDS: u32 = 16;
+Times are predicted from a few hundred receivers that are baked for trial on this machine.";
+
+const COLUMNS: Columns = Columns(&[
+    (15, Side::Left),
+    (20, Side::Left),
+    (21, Side::Left),
+    (7, Side::Right),
+    (7, Side::Right),
+    (8, Side::Right),
+    (28, Side::Left),
+]);
+const MESH_COLUMNS: Columns = Columns(&[(30, Side::Left), (10, Side::Right), (10, Side::Right), (62, Side::Left)]);
+/// Blanks before the reason of a row.
+const INDENT: usize = 17;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
     #[command(flatten)]
     scene: SceneOptions,
-    /// A light: tells how much of it the bands hold.
+    /// A light: tells how many bands it can show, and how much of it they hold.
     #[arg(long, value_name = "PROBE", value_parser = source::probe)]
     probe: Option<ProbeSource>,
     #[command(flatten)]
     read: ReadOptions,
     #[command(flatten)]
     bake: BakeOptions,
+    /// List what each mesh calls for.
+    #[arg(long)]
+    meshes: bool,
     /// Print JSON.
     #[arg(long)]
     json: bool,
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
-    let settings = options.bake.settings()?;
+    let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
+    let settings = options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))?;
     let scene = options.scene.load(console)?;
-    let plan = bake::plan(&scene, &settings).map_err(crate::bake::fault)?;
-    let light = match &options.probe {
-        Some(probe) => Some(LightFacts::of(&probe.load(&options.read, console)?)?),
-        None => None,
-    };
+    let began = Instant::now();
+    let price = bake::price(&scene, &settings, &|| began.elapsed()).map_err(crate::bake::fault)?;
     let text = if options.json {
-        let light = light.as_ref().map(LightFacts::json);
-        format!("{:#}", json!({ "scene": scene.name, "settings": settings, "plan": plan, "light": light }))
+        as_json(&scene, &settings, &price, light.as_ref())
     } else {
-        let mut text = as_text(&scene.name, &plan, settings.bands)?;
-        light.iter().try_for_each(|light| light.write(&mut text, &settings))?;
+        let mut text = as_text(&scene.name, &price);
+        if options.meshes {
+            text.push('\n');
+            text.push_str(&meshes(&scene, &price.plan));
+        }
+        if let Some(light) = &light {
+            text.push_str(&format!("\n{}\n", light.text(price.plan.bands)));
+        }
         text
     };
     console.print(&text)
 }
 
-fn as_text(scene: &str, plan: &Plan, bands: u32) -> Result<String> {
-    let mut text = String::new();
-    let (receivers, shadowed) = (plan.receivers, plan.shadowed_receivers);
-    writeln!(text, "{scene}: {receivers} receivers, {shadowed} of them with something above")?;
-    writeln!(text, "{} channel(s), about {} bounces\n", plan.channels, plan.bounces)?;
-    writeln!(text, "{:<16} {:<8} {:>14} {:>14}  reason", "effect", "simulate", "rays", "bytes")?;
-    plan.rows.iter().try_for_each(|row| write_row(&mut text, row))?;
-    let (rays, bytes) = plan
-        .rows
-        .iter()
-        .fold((0_u64, 0_u64), |(rays, bytes), row| (rays.saturating_add(row.rays), bytes.saturating_add(row.bytes)));
-    // What every bake has, whatever its effects: one channel of transfer.
-    let base = plan.receivers.saturating_mul(u64::from(bands * bands) * 4);
-    writeln!(text, "{:<16} {:<8} {:>14} {base:>14}  one channel of transfer for every receiver", "Transfer", "yes", 0)?;
-    let bytes = bytes.saturating_add(base);
-    writeln!(text, "{:<16} {:<8} {rays:>14} {bytes:>14}", "together", "")?;
-    Ok(text)
-}
-
-fn write_row(text: &mut String, row: &PlanRow) -> Result<()> {
-    let name = format!("{:?}", row.effect);
-    let simulate = if row.simulate { "yes" } else { "no" };
-    write!(text, "{name:<16} {simulate:<8} {:>14} {:>14}  {}", row.rays, row.bytes, row.reason)?;
-    if !row.called_for_by.is_empty() {
-        write!(text, " ({})", row.called_for_by.join(", "))?;
-    }
-    Ok(writeln!(text)?)
-}
-
-/// What matters about a light to a bake.
-struct LightFacts {
-    name: String,
-    lamps: usize,
-    /// Share of the squared coefficients, up to [`LIGHT_BANDS`], in each band.
-    share: Vec<f64>,
-}
-
-impl LightFacts {
-    fn of(environment: &Environment) -> Result<Self> {
-        let bands = source::bands(&LIGHT_BANDS.to_string()).map_err(crate::usage::Usage)?;
-        let light = sh_math::project(bands, environment.samples());
-        Ok(Self { name: environment.name.clone(), lamps: environment.lamps.len(), share: shares(bands, &light) })
-    }
-
-    fn json(&self) -> serde_json::Value {
-        json!({ "name": self.name, "lamps": self.lamps, "share_by_band": self.share })
-    }
-
-    fn write(&self, text: &mut String, settings: &Settings) -> Result<()> {
-        let held: f64 = self.share.iter().take(settings.bands as usize).sum();
-        writeln!(
-            text,
-            "\n{}: {} lamp(s); {} bands hold {:.1}% of the power in the first {LIGHT_BANDS}",
-            self.name,
-            self.lamps,
-            settings.bands,
-            100.0 * held
-        )?;
-        Ok(())
+/// Seconds of one effect; those that only follow from the materials take none.
+fn effect_seconds(price: &Price, effect: Effect) -> f64 {
+    match effect {
+        Effect::Visibility => price.visibility,
+        Effect::Interreflection => price.interreflection,
+        _ => 0.0,
     }
 }
 
-fn shares(bands: Bands, light: &Rgb) -> Vec<f64> {
-    let square = |value: &[f32; 3]| value.iter().map(|v| f64::from(*v) * f64::from(*v)).sum::<f64>();
-    let power: Vec<f64> =
-        bands.degrees().map(|l| light.values[l * l..(l + 1) * (l + 1)].iter().map(square).sum()).collect();
-    let total: f64 = power.iter().sum();
-    // A black light has no shares.
-    power.iter().map(|p| if total > 0.0 { p / total } else { 0.0 }).collect()
+fn together(price: &Price) -> f64 {
+    price.preparation + price.visibility + price.interreflection
+}
+
+fn as_json(scene: &Scene, settings: &Settings, price: &Price, light: Option<&LightFacts>) -> String {
+    let mut plan = json!(price.plan);
+    for (row, value) in price.plan.rows.iter().zip(plan["rows"].as_array_mut().into_iter().flatten()) {
+        value["seconds"] = json!(effect_seconds(price, row.effect));
+    }
+    for (mesh, value) in price.plan.meshes.iter().zip(plan["meshes"].as_array_mut().into_iter().flatten()) {
+        value["name"] = json!(scene.meshes[mesh.mesh as usize].name);
+    }
+    let seconds = json!({
+        "preparation": price.preparation, "visibility": price.visibility, "interreflection": price.interreflection,
+        "together": together(price), "receivers_tried": price.tried,
+    });
+    let value = json!({
+        "scene": scene.name, "settings": settings, "plan": plan, "seconds": seconds, "light": light.map(LightFacts::json),
+    });
+    format!("{value:#}")
+}
+
+fn as_text(scene: &str, price: &Price) -> String {
+    let plan = &price.plan;
+    let head = format!(
+        "{scene}: {} receivers, {} of them with something above; {} bands, {} channel(s), about {} bounces",
+        plan.receivers, plan.shadowed_receivers, plan.bands, plan.channels, plan.expected_bounces
+    );
+    let mut text = wrap(&head, COLUMNS.width()).join("\n") + "\n\n";
+    text.push_str(&COLUMNS.row(&[
+        "effect",
+        "called for by",
+        "decision",
+        "rays",
+        "time",
+        "bytes",
+        "if that were wrong",
+    ]));
+    text.push_str(&"-".repeat(COLUMNS.width()));
+    text.push('\n');
+    for row in &plan.rows {
+        text.push_str(&row_text(row, effect_seconds(price, row.effect)));
+    }
+    let rays: u64 = plan.rows.iter().map(|row| row.rays).sum();
+    let size: u64 = plan.rows.iter().map(|row| row.bytes).sum();
+    text.push_str(&"-".repeat(COLUMNS.width()));
+    text.push('\n');
+    let looked = format!("time with {} to split the scene, build the tree and decide", seconds(price.preparation));
+    let total = seconds(together(price));
+    text.push_str(&COLUMNS.row(&["together", "", "", &count(rays), &total, &bytes(size), &looked]));
+    text
+}
+
+fn row_text(row: &PlanRow, time: f64) -> String {
+    let more = row.callers.saturating_sub(row.called_for_by.len() as u64);
+    let mut by = row.called_for_by.join(", ");
+    match (by.is_empty(), more) {
+        (true, _) => by.push('-'),
+        (false, 0) => {}
+        (false, n) => by.push_str(&format!(" and {n} more")),
+    }
+    let (rays, time, size) = (count(row.rays), seconds(time), bytes(row.bytes));
+    let cells = [row.effect.name(), &by, &row.decision, &rays, &time, &size, &row.at_stake];
+    let mut text = COLUMNS.row(&cells);
+    for line in wrap(&format!("since {}", row.reason), COLUMNS.width() - INDENT) {
+        text.push_str(&format!("{}{line}\n", " ".repeat(INDENT)));
+    }
+    text
+}
+
+fn meshes(scene: &Scene, plan: &Plan) -> String {
+    let mut text = MESH_COLUMNS.row(&["mesh", "receivers", "shadowed", "effects"]);
+    for mesh in &plan.meshes {
+        let effects: Vec<&str> = mesh.effects.iter().map(|effect| effect.name()).collect();
+        let effects = if effects.is_empty() { "none".to_owned() } else { effects.join(", ") };
+        let (receivers, shadowed) = (mesh.receivers.to_string(), mesh.shadowed.to_string());
+        text.push_str(&MESH_COLUMNS.row(&[&scene.meshes[mesh.mesh as usize].name, &receivers, &shadowed, &effects]));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No line is wider than a wide console, and every effect has its row with its reason.
+    #[test]
+    fn the_table_fits() {
+        let scene = scene::builtin("cornell-box").unwrap();
+        let price = bake::price(&scene, &bake::settings::preview(), &|| std::time::Duration::ZERO).unwrap();
+        let text = as_text(&scene.name, &price) + &meshes(&scene, &price.plan);
+        for line in text.lines() {
+            assert!(line.chars().count() <= 120, "{} characters: {line}", line.chars().count());
+        }
+        assert!(Effect::ALL.iter().all(|effect| text.contains(effect.name())), "{text}");
+        assert_eq!(text.matches("since ").count(), Effect::ALL.len(), "{text}");
+        assert!(COLUMNS.width() >= 100 && COLUMNS.width() <= 120, "{}", COLUMNS.width());
+    }
 }

@@ -3,20 +3,25 @@
 use crate::usage::Usage;
 use anyhow::Result;
 use bake::settings;
-use coeff_io::{Bounces, Effect, Effects, Quality, Refine, Sampler, Settings};
+use coeff_io::{BandChoice, Bounces, Effect, Effects, Quality, Refine, Sampler, Settings};
 
 /// How to bake, as typed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct BakeOptions {
-    /// Number of bands: n bands are n*n coefficients per receiver.
-    #[arg(long, value_name = "N", default_value_t = settings::standard().bands)]
-    bands: u32,
+    /// Number of bands: n bands are n*n coefficients per receiver. With auto those whose absence would show, under the light of
+    /// --probe where one is given: 5 at most, or auto:MAX.
+    #[arg(long, value_name = "N|auto|auto:MAX", default_value_t = BandsOption::standard(), value_parser = bands)]
+    bands: BandsOption,
     /// Fixed number of rays per receiver.
     #[arg(long, value_name = "N", conflicts_with = "error")]
     rays: Option<u32>,
     /// Relative error of each receiver's transfer to reach (0.01 where neither is given).
     #[arg(long, value_name = "E")]
     error: Option<f32>,
+    /// The least error within a time: seconds, or 30s, 5m, 2h. Bakes from coarse to fine; the file is there after the first, coarse
+    /// result and holds the finest one that was finished in time.
+    #[arg(long, value_name = "T", conflicts_with_all = ["error", "rays"], value_parser = seconds)]
+    time: Option<f32>,
     /// How often light may bounce: a number, or auto for until it changes nothing.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = bounces)]
     bounces: Bounces,
@@ -64,17 +69,47 @@ enum SamplerName {
     Stratified,
 }
 
+/// How many bands, as typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct BandsOption {
+    count: u32,
+    choice: BandChoice,
+}
+
+impl BandsOption {
+    fn standard() -> Self {
+        Self { count: settings::standard().bands, choice: BandChoice::Exactly }
+    }
+}
+
+impl std::fmt::Display for BandsOption {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.choice {
+            BandChoice::Exactly => write!(f, "{}", self.count),
+            BandChoice::Needed => write!(f, "auto:{}", self.count),
+        }
+    }
+}
+
 impl BakeOptions {
-    /// The settings that these options stand for.
-    pub(crate) fn settings(&self) -> Result<Settings> {
+    /// Bands that are baked at most.
+    pub(crate) fn most_bands(&self) -> u32 {
+        self.bands.count
+    }
+
+    /// The settings that these options stand for, with the norms of the bands of a light where one is known.
+    pub(crate) fn settings(&self, light: &[f32]) -> Result<Settings> {
         if self.storage == Storage::Texture {
             let what = "--storage texture is not available yet: use --storage vertex";
             return Err(Usage(what.into()).into());
         }
         let standard = settings::standard();
         let settings = Settings {
-            bands: self.bands,
+            bands: self.bands.count,
+            band_choice: self.bands.choice,
+            light: light.to_vec(),
             quality: self.rays.map(Quality::Rays).or(self.error.map(Quality::Error)).unwrap_or(standard.quality),
+            time: self.time,
             bounces: self.bounces,
             refine: self.refine,
             effects: self.effects.clone(),
@@ -88,6 +123,17 @@ impl BakeOptions {
         };
         settings::check(&settings).map_err(|error| Usage(error.to_string()))?;
         Ok(settings)
+    }
+}
+
+fn bands(text: &str) -> Result<BandsOption, String> {
+    let number = |text: &str| text.parse().map_err(|_| "give a number, auto or auto:MAX".to_owned());
+    match text.strip_prefix("auto") {
+        Some("") => Ok(BandsOption { choice: BandChoice::Needed, ..BandsOption::standard() }),
+        Some(most) => {
+            Ok(BandsOption { count: number(most.strip_prefix(':').unwrap_or(""))?, choice: BandChoice::Needed })
+        }
+        None => Ok(BandsOption { count: number(text)?, choice: BandChoice::Exactly }),
     }
 }
 
@@ -117,17 +163,25 @@ fn effects(text: &str) -> Result<Effects, String> {
 }
 
 fn effect(name: &str) -> Result<Effect, String> {
-    Ok(match name {
-        "visibility" => Effect::Visibility,
-        "interreflection" => Effect::Interreflection,
-        "color" => Effect::Color,
-        "masks" => Effect::Masks,
-        "specular" => Effect::Specular,
-        "normal-maps" => Effect::NormalMaps,
-        "emission" => Effect::Emission,
-        "transmission" => Effect::Transmission,
-        other => return Err(format!("'{other}' is no effect")),
-    })
+    match Effect::ALL.into_iter().find(|effect| effect.name() == name) {
+        Some(Effect::Bands) => Err("the number of bands is set by --bands".into()),
+        Some(Effect::Motion) => Err("moving objects are not simulated".into()),
+        Some(effect) => Ok(effect),
+        None => Err(format!("'{name}' is no effect")),
+    }
+}
+
+fn seconds(text: &str) -> Result<f32, String> {
+    let (digits, unit) = match text.char_indices().next_back() {
+        Some((at, 's')) => (&text[..at], 1.0),
+        Some((at, 'm')) => (&text[..at], 60.0),
+        Some((at, 'h')) => (&text[..at], 3600.0),
+        _ => (text, 1.0),
+    };
+    let wrong = || "give a time above 0, such as 90, 90s, 5m or 2h".to_owned();
+    let number: f32 = digits.parse().map_err(|_| wrong())?;
+    let seconds = number * unit;
+    if seconds > 0.0 && seconds.is_finite() { Ok(seconds) } else { Err(wrong()) }
 }
 
 /// Parses a number of bytes with K, M or G.
@@ -151,9 +205,16 @@ mod tests {
         assert_eq!(bytes("4G"), Ok(4 << 30));
         assert_eq!(bytes("100"), Ok(100));
         assert!(bytes("G").is_err() && bytes("-1").is_err() && bytes("99999999999G").is_err());
+        assert_eq!(seconds("90"), Ok(90.0));
+        assert_eq!(seconds("1.5m"), Ok(90.0));
+        assert!(seconds("0").is_err() && seconds("-1s").is_err() && seconds("m").is_err() && seconds("infh").is_err());
         assert_eq!(bounces("2"), Ok(Bounces::Fixed(2)));
         assert!(bounces("many").is_err());
         assert_eq!(effects("color,masks"), Ok(Effects::Only(vec![Effect::Color, Effect::Masks])));
-        assert!(effects("colour").is_err() && effects("").is_err());
+        assert!(effects("colour").is_err() && effects("").is_err() && effects("motion").is_err());
+        assert_eq!(bands("7"), Ok(BandsOption { count: 7, choice: BandChoice::Exactly }));
+        assert_eq!(bands("auto"), Ok(BandsOption { count: 5, choice: BandChoice::Needed }));
+        assert_eq!(bands("auto:8"), Ok(BandsOption { count: 8, choice: BandChoice::Needed }));
+        assert!(bands("auto8").is_err() && bands("auto:").is_err() && bands("many").is_err());
     }
 }

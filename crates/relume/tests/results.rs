@@ -25,17 +25,39 @@ fn a_bake_tells_what_it_holds() {
     let plan = json(folder, &["plan", "builtin:half-blocked-plane", "--probe", "builtin:sky", "--json"]);
     assert!(plan["plan"]["receivers"].as_u64().unwrap() > 0);
     assert!(plan["light"]["lamps"].as_u64().unwrap() > 0);
+    let rows = plan["plan"]["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 10);
+    assert!(rows.iter().all(|row| row["seconds"].is_number() && row["at_stake"].is_string()), "{rows:?}");
+    assert!(plan["seconds"]["together"].as_f64().unwrap() > 0.0 && plan["plan"]["meshes"][0]["name"].is_string());
     let bake = ["bake", "builtin:half-blocked-plane", "-o", "a.prt", "--bands", "3", "--rays", "64", "--seed", "5"];
     let (out, said) = succeed(folder, &bake);
     assert!(out.is_empty() && said.contains("a.prt") && said.contains("rays"), "{said}");
     let seen = json(folder, &["inspect", "a.prt", "--json"]);
-    assert_eq!(seen["version"], 1);
+    assert_eq!(seen["version"], 2);
     assert_eq!(seen["header"]["settings"]["seed"], 5);
     assert_eq!(seen["header"]["bands"], 3);
     assert_eq!(seen["file_length"], fs::metadata(folder.join("a.prt")).unwrap().len());
     assert!(seen["chunks"].as_array().unwrap().iter().all(|chunk| chunk["sound"] == true));
+    let cost = &seen["header"]["achieved"]["effects"][0];
+    assert_eq!((cost["effect"].as_str(), cost["rays"].as_u64() > Some(0)), (Some("Visibility"), true), "{cost}");
+    assert!(cost["saved_rays"].as_u64() > Some(0), "most of the plane has a closed form: {cost}");
     let (text, _) = succeed(folder, &["inspect", "a.prt"]);
-    assert!(text.contains("half-blocked-plane") && text.contains("TRAN") && text.contains("Visibility"), "{text}");
+    assert!(text.contains("saved") && text.contains("closed form"), "{text}");
+    assert!(text.contains("half-blocked-plane") && text.contains("TRAN") && text.contains("visibility"), "{text}");
+}
+
+/// A white light shows one band, and auto bakes no more; a number is kept to.
+#[test]
+fn bands_that_the_light_cannot_show_are_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (bands, light, expected) in
+        [("auto", "builtin:white", 1), ("5", "builtin:white", 5), ("auto:4", "builtin:sky", 3)]
+    {
+        succeed(folder, &["bake", "builtin:plane", "-o", "a.prt", "--bands", bands, "--probe", light]);
+        let seen = json(folder, &["inspect", "a.prt", "--json"]);
+        assert_eq!(seen["header"]["bands"], expected, "--bands {bands} under {light}");
+    }
 }
 
 /// Threads change nothing: the file is the same byte by byte.

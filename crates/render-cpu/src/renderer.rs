@@ -83,6 +83,12 @@ impl<'a> Renderer<'a> {
         self.light = light;
     }
 
+    /// Number of levels of the probe blurred for reflections: 0 where no surface mirrors it.
+    #[must_use]
+    pub fn reflection_levels(&self) -> usize {
+        self.reflection.as_ref().map_or(0, |reflection| reflection.levels.len())
+    }
+
     /// Draws one frame as docs/shading.md says.
     ///
     /// # Errors

@@ -260,3 +260,16 @@ fn the_fit_of_the_environment_brdf_follows_its_integral() {
 fn a_fit_of_linear_roughness_can_fail() {
     assert!(worst_of_fit(|roughness, cosine| environment_brdf(roughness * roughness, cosine)) > 0.1);
 }
+
+/// A file without reflections costs no blurred probe; masks, emission and normal maps alone call for none either.
+#[test]
+fn only_what_mirrors_blurs_the_probe() {
+    let sky = Environment::constant([1.0; 3]);
+    let levels = |material: Material| {
+        let prt = wall(material);
+        render_cpu::Renderer::new(&prt, &sky).expect("a sound scene").reflection_levels()
+    };
+    assert_eq!(levels(white()), 0);
+    assert_eq!(levels(Material { alpha: AlphaMode::Mask(0.5), emissive: [1.0; 3], metallic: 1.0, ..white() }), 0);
+    assert_eq!(levels(Material { specular: true, ..white() }), render_cpu::REFLECTION_LEVELS, "can fail");
+}

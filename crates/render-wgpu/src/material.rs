@@ -141,3 +141,55 @@ fn slot(slot: Option<TextureSlot>) -> gpu_data::Slot {
         gpu_data::Slot { u: [a, b, c, f32::from(slot.uv_set)], v: [d, e, f, 0.0] }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matt() -> Material {
+        Material {
+            name: String::new(),
+            base_color: [1.0; 4],
+            base_color_texture: None,
+            metallic: 1.0,
+            roughness: 0.0,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+            emissive: [1.0; 3],
+            emissive_texture: None,
+            alpha: AlphaMode::Opaque,
+            specular: false,
+            transmission: 0.0,
+        }
+    }
+
+    fn parts(material: &Material, has_tangents: bool) -> Vec<&'static str> {
+        let variant = Variant::of(material, has_tangents);
+        let own = [("shiny", variant.shiny), ("sorted", variant.blended)];
+        let names = own.into_iter().filter(|(_, on)| *on).map(|(name, _)| name);
+        names.chain(variant.constants().into_iter().filter(|(_, on)| *on != 0.0).map(|(name, _)| name)).collect()
+    }
+
+    /// What the file does not call for is in no pipeline: no reflection, no mask, no blending, no texture look-up.
+    #[test]
+    fn a_plain_material_has_the_plain_pipeline() {
+        assert!(parts(&matt(), true).is_empty(), "{:?}", parts(&matt(), true));
+    }
+
+    /// Each effect brings its own part and no other.
+    #[test]
+    fn each_effect_brings_its_part_alone() {
+        let slot = Some(TextureSlot { texture: 0, uv_set: 0, transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] });
+        let shiny = Material { specular: true, ..matt() };
+        let bumpy = Material { normal_texture: slot, ..matt() };
+        assert_eq!(parts(&shiny, true), ["shiny"]);
+        assert_eq!(parts(&Material { alpha: AlphaMode::Mask(0.5), ..matt() }, true), ["masked"]);
+        assert_eq!(parts(&Material { alpha: AlphaMode::Blend, ..matt() }, true), ["sorted", "blended", "fades"]);
+        assert_eq!(parts(&Material { transmission: 0.5, ..matt() }, true), ["sorted", "blended"]);
+        assert_eq!(parts(&Material { emissive_texture: slot, ..matt() }, true), ["glow_textured"]);
+        assert!(parts(&bumpy, true).is_empty(), "a normal map bends nothing where nothing shines");
+        assert_eq!(parts(&Material { normal_texture: slot, ..shiny.clone() }, true), ["shiny", "normal_textured"]);
+        assert_eq!(parts(&Material { normal_texture: slot, ..shiny }, false), ["shiny"], "nor without tangents");
+    }
+}

@@ -17,6 +17,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Lights that the file defines; read and reported, not baked.
     pub lights: Vec<PunctualLight>,
+    /// Names of the meshes that the file's animations or skins move; they are placed as the file has them at rest.
+    pub moving: Vec<String>,
     /// What was noticed and mended while loading.
     pub report: Report,
 }

@@ -96,9 +96,19 @@ impl Scene {
     pub fn coverage(&self, mesh: usize, triangle: usize, u: f32, v: f32) -> f32 {
         match self.material(mesh).alpha {
             AlphaMode::Opaque => 1.0,
-            AlphaMode::Mask(cutoff) => f32::from(u8::from(self.base_color(mesh, triangle, u, v).w >= cutoff)),
-            AlphaMode::Blend => self.base_color(mesh, triangle, u, v).w.clamp(0.0, 1.0),
+            AlphaMode::Mask(cutoff) => f32::from(u8::from(self.alpha(mesh, triangle, u, v) >= cutoff)),
+            AlphaMode::Blend => self.alpha(mesh, triangle, u, v).clamp(0.0, 1.0),
         }
+    }
+
+    /// The alpha of [`Scene::base_color`] alone, to the bit: masks ask for it with every ray that meets them.
+    fn alpha(&self, mesh: usize, triangle: usize, u: f32, v: f32) -> f32 {
+        let material = self.material(mesh);
+        let texel = material.base_color_texture.map_or(1.0, |slot| {
+            let uv = slot.place(self.meshes[mesh].uv(slot.uv_set, triangle, u, v));
+            self.textures[slot.texture as usize].sample_alpha(uv)
+        });
+        material.base_color.w * self.meshes[mesh].color(triangle, u, v).w * texel
     }
 
     /// Linear radiance that a point of a triangle emits.

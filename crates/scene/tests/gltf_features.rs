@@ -189,3 +189,16 @@ fn generated_tangents_agree_with_those_of_the_file() {
     // The file's own tangents are averaged a little differently where its unwrapping meets itself.
     assert!(alike as f64 > 0.97 * corners as f64, "{alike} of {corners} within 11 degrees");
 }
+
+/// What an animation moves, with all that hangs on it, is named; what stands still is not.
+#[test]
+fn moving_meshes_are_named() {
+    let nodes = r#","nodes":[{"name":"arm","children":[1]},{"name":"hand","mesh":0},{"name":"table","mesh":0}],
+        "scenes":[{"nodes":[0,2]}],"scene":0"#;
+    let animation = r#","animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],
+        "samplers":[{"input":0,"output":0}]}]"#;
+    let moving = load(&triangle(&format!("{}{nodes}{animation}", mesh("")))).moving;
+    assert_eq!(moving, ["hand"]);
+    let still = load(&triangle(&format!("{}{nodes}", mesh("")))).moving;
+    assert!(still.is_empty(), "can fail: without the animation nothing moves, yet {still:?}");
+}

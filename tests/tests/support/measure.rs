@@ -22,6 +22,8 @@ pub(crate) struct Figures {
     pub(crate) paths: u32,
     /// Mean of |bake - reference| over receivers and channels, as a share of the mean radiance.
     pub(crate) difference: f64,
+    /// The same with each receiver weighed by the area that it stands for, over the mean radiance so weighed.
+    pub(crate) by_area: f64,
     /// Mean of bake - reference, as a share of the mean radiance: what does not average out.
     pub(crate) bias: f64,
     /// Mean standard error of the reference, as a share of the mean radiance.
@@ -49,6 +51,8 @@ pub(crate) fn measure(subject: &Subject, light: &BandLight, max_bounces: Option<
 struct Row {
     /// Row of the transfer.
     row: usize,
+    /// Area that it stands for, square metres.
+    area: f64,
     /// Radiance by the bake.
     baked: [f64; 3],
     /// Radiance by the path tracer.
@@ -72,8 +76,12 @@ impl Row {
 }
 
 fn rows(subject: &Subject, light: &BandLight, traced: &[Estimate]) -> Vec<Row> {
-    let row =
-        |(&row, &traced): (&usize, &Estimate)| Row { row, baked: subject.radiance(row, &light.coefficients), traced };
+    let row = |(&row, &traced): (&usize, &Estimate)| Row {
+        row,
+        area: subject.area(row),
+        baked: subject.radiance(row, &light.coefficients),
+        traced,
+    };
     subject.rows.iter().zip(traced).map(row).collect()
 }
 
@@ -96,6 +104,7 @@ fn figures(subject: &Subject, mut rows: Vec<Row>, paths: u32) -> Figures {
         left_out: subject.left_out,
         paths,
         difference: sum(&Row::difference) / total,
+        by_area: sum(&|r| r.area * r.difference()) / sum(&|r| r.area * r.size()),
         bias: signed / total,
         noise: spread / total,
         relative: [at(0.5), at(0.95)],
@@ -106,10 +115,10 @@ fn figures(subject: &Subject, mut rows: Vec<Row>, paths: u32) -> Figures {
 impl Display for Figures {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let [median, most] = self.relative;
-        let shares = [self.difference, self.bias, self.noise, median, most].map(|share| 100.0 * share);
-        let [difference, bias, noise, median, most] = shares;
+        let shares = [self.difference, self.by_area, self.bias, self.noise, median, most].map(|share| 100.0 * share);
+        let [difference, by_area, bias, noise, median, most] = shares;
         write!(f, "{} receivers ({} left out), {} paths: ", self.receivers, self.left_out, self.paths)?;
-        write!(f, "difference {difference:.2} %, bias {bias:+.2} %, noise {noise:.2} %, ")?;
+        write!(f, "difference {difference:.2} % (by area {by_area:.2} %), bias {bias:+.2} %, noise {noise:.2} %, ")?;
         write!(f, "per receiver median {median:.2} %, 95th percentile {most:.2} %; worst:\n{}", self.worst)
     }
 }

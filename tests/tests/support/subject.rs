@@ -55,6 +55,16 @@ impl Subject {
         self.rows.iter().map(point).collect()
     }
 
+    /// Area that a row stands for, square metres: a third of its triangles'.
+    pub(crate) fn area(&self, row: usize) -> f64 {
+        let geometry = &self.prt.geometry;
+        let of = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| glam::Vec3::from(geometry.positions[v as usize]).as_dvec3());
+            (b - a).cross(c - a).length() / 6.0
+        };
+        geometry.triangles.iter().filter(|t| t.contains(&(row as u32))).map(of).sum()
+    }
+
     /// Outgoing radiance of a row under a light: albedo times transfer times light.
     pub(crate) fn radiance(&self, row: usize, light: &sh_math::Rgb) -> [f64; 3] {
         let transfer = &self.prt.transfer;

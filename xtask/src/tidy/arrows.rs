@@ -44,8 +44,11 @@ const WITH_STUDY: &[&str] = &[
     "study",
 ];
 /// Crates of others that only some crates of the house may use.
-const RESERVED: &[(&str, &[&str])] =
-    &[("wgpu", &["render-wgpu"]), ("rayon", &["bake", "reference", "render-cpu", "study", "relume"]), ("gltf", &["scene"])];
+const RESERVED: &[(&str, &[&str])] = &[
+    ("wgpu", &["render-wgpu"]),
+    ("rayon", &["bake", "reference", "render-cpu", "study", "relume"]),
+    ("gltf", &["scene"]),
+];
 
 /// What cargo is asked: the normal edges that start in the workspace, each line with its depth.
 pub(super) const QUESTION: [&str; 10] =

@@ -18,6 +18,13 @@ pub(crate) fn sample() -> Prt {
             bounces: 2,
             bounce_changes: vec![0.25, 0.0625],
             repairs: RepairCounts { inside: 1, bad_normals: 2, unrepaired: 0 },
+            effects: vec![EffectCost {
+                effect: Effect::Visibility,
+                rays: 1_234_567_890_123,
+                saved_rays: 12,
+                bytes: 28,
+                saved_bytes: 0,
+            }],
         },
         meshes: vec![mesh("floor", 0, [0, 4], [0, 2]), mesh("wall é", 1, [4, 3], [2, 1])],
         materials: vec![material("stone"), plain_material("glass")],
@@ -30,8 +37,11 @@ pub(crate) fn sample() -> Prt {
 
 fn settings() -> Settings {
     Settings {
-        bands: 2,
+        bands: 3,
+        band_choice: BandChoice::Needed,
+        light: vec![1.5, 0.25],
         quality: Quality::Error(0.01),
+        time: None,
         bounces: Bounces::Fixed(2),
         effects: Effects::Only(vec![Effect::Visibility, Effect::Interreflection, Effect::Color]),
         sampler: Sampler::OwenSobol,
@@ -45,20 +55,39 @@ fn plan() -> Plan {
     let row = PlanRow {
         effect: Effect::Color,
         simulate: true,
+        decision: "3 channels".into(),
         reason: "the floor is red".into(),
         called_for_by: vec!["floor".into(), "wall é".into()],
+        callers: 9,
         rays: 0,
         bytes: 336,
+        stake: 0.5,
+        at_stake: "bounced light would be grey".into(),
     };
     let masks = PlanRow {
         effect: Effect::Masks,
         simulate: false,
+        decision: "opaque".into(),
         reason: "no mask".into(),
         called_for_by: vec![],
+        callers: 0,
         rays: 0,
         bytes: 0,
+        stake: 0.0,
+        at_stake: "nothing".into(),
     };
-    Plan { rows: vec![row, masks], receivers: 7, shadowed_receivers: 3, channels: 3, bounces: 2 }
+    Plan {
+        rows: vec![row, masks],
+        meshes: vec![MeshPlan { mesh: 1, receivers: 3, shadowed: 2, effects: vec![Effect::Motion, Effect::Bands] }],
+        survey: Survey { receivers: 2, rays: 256, coverage: [0.25, 0.5], band_norms: vec![0.25, 0.125] },
+        receivers: 7,
+        shadowed_receivers: 3,
+        dark_receivers: 1,
+        bands: 2,
+        channels: 3,
+        bounces: 2,
+        expected_bounces: 1,
+    }
 }
 
 fn mesh(name: &str, material: u32, vertices: [u32; 2], triangles: [u32; 2]) -> Mesh {

@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 use coeff_io::{
-    Achieved, AlphaMode, Bounces, Camera, Effects, Geometry, Material, Mesh, Plan, Prt, Quality, Refine, Sampler,
-    Settings, Transfer,
+    Achieved, AlphaMode, BandChoice, Bounces, Camera, Effects, Geometry, Material, Mesh, Plan, Prt, Quality, Refine,
+    Sampler, Settings, Transfer,
 };
 use glam::Vec3;
 
@@ -50,7 +50,10 @@ pub(crate) fn empty() -> Prt {
         scene: "test".into(),
         settings: Settings {
             bands: 2,
+            band_choice: BandChoice::Exactly,
+            light: Vec::new(),
             quality: Quality::Rays(1),
+            time: None,
             bounces: Bounces::Fixed(0),
             effects: Effects::Auto,
             sampler: Sampler::OwenSobol,

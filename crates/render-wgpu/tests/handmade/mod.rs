@@ -3,8 +3,8 @@
 //! Its transfer is the unshadowed closed form, tinted and darkened by formula, so that nothing has to be traced.
 
 use coeff_io::{
-    Achieved, AlphaMode, Bounces, Camera, Effects, Material, Mesh, Plan, Prt, Quality, Refine, Sampler, Settings,
-    Texture, TextureSlot, Transfer, Wrap,
+    Achieved, AlphaMode, BandChoice, Bounces, Camera, Effects, Material, Mesh, Plan, Prt, Quality, Refine, Sampler,
+    Settings, Texture, TextureSlot, Transfer, Wrap,
 };
 use glam::{Quat, Vec3};
 use probe_io::{Environment, Lamp};
@@ -65,7 +65,10 @@ fn empty(channels: u32) -> Prt {
         scene: "test".into(),
         settings: Settings {
             bands: BANDS,
+            band_choice: BandChoice::Exactly,
+            light: Vec::new(),
             quality: Quality::Rays(1),
+            time: None,
             bounces: Bounces::Fixed(0),
             effects: Effects::Auto,
             sampler: Sampler::OwenSobol,

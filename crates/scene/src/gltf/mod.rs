@@ -36,6 +36,7 @@ pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
         textures,
         cameras: placed.cameras,
         lights: placed.lights,
+        moving: placed.moving,
         report,
     })
 }

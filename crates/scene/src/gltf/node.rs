@@ -19,6 +19,7 @@ pub(super) struct Placed {
     pub(super) meshes: Vec<Mesh>,
     pub(super) cameras: Vec<Camera>,
     pub(super) lights: Vec<PunctualLight>,
+    pub(super) moving: Vec<String>,
     elements: usize,
 }
 
@@ -34,6 +35,7 @@ pub(super) fn place(document: &Document<'_>, primitives: &[Vec<Mesh>], report: &
     let mut placed = Placed::default();
     let mut stack: Vec<(usize, DMat4, usize)> = roots.into_iter().rev().map(|n| (n, DMat4::IDENTITY, 0)).collect();
     let mut seen = vec![false; root.nodes.len()];
+    let mut moved = animated(document);
     while let Some((n, world_from_parent, depth)) = stack.pop() {
         if std::mem::replace(&mut seen[n], true) {
             return Err(document.invalid(format!("nodes[{n}]"), "appears twice in the scene"));
@@ -44,6 +46,11 @@ pub(super) fn place(document: &Document<'_>, primitives: &[Vec<Mesh>], report: &
         let node = &root.nodes[n];
         let world_from_node = world_from_parent * parent_from_node(document, n, node)?;
         show(document, primitives, n, world_from_node, &mut placed, report)?;
+        if node.mesh.is_some() && (moved[n] || node.skin.is_some()) {
+            placed.moving.push(name_of(node, n));
+        }
+        // What hangs on a moved node moves with it.
+        node.children.iter().flatten().for_each(|child| moved[child.value()] |= moved[n]);
         let children = node.children.iter().flatten().rev();
         stack.extend(children.map(|child| (child.value(), world_from_node, depth + 1)));
     }
@@ -54,6 +61,18 @@ pub(super) fn place(document: &Document<'_>, primitives: &[Vec<Mesh>], report: &
         }
     }
     Ok(placed)
+}
+
+/// Which nodes some animation moves or reshapes by itself.
+fn animated(document: &Document<'_>) -> Vec<bool> {
+    let mut moved = vec![false; document.root.nodes.len()];
+    let channels = document.root.animations.iter().flat_map(|animation| &animation.channels);
+    channels.for_each(|channel| moved[channel.target.node.value()] = true);
+    moved
+}
+
+fn name_of(node: &Node, n: usize) -> String {
+    node.name.clone().unwrap_or_else(|| format!("nodes[{n}]"))
 }
 
 /// The parent of each node; refuses graphs that are not trees.
@@ -116,7 +135,7 @@ fn show(
     report: &mut Report,
 ) -> Result<(), Error> {
     let node = &document.root.nodes[n];
-    let name = node.name.clone().unwrap_or_else(|| format!("nodes[{n}]"));
+    let name = name_of(node, n);
     if let Some(mesh) = node.mesh {
         if node.skin.is_some() {
             warn(report, &name, "skinning is not applied; the mesh stands as modelled");

@@ -1,0 +1,205 @@
+//! Finds edges along which transfer bends: where what is seen from the middle is not the mean of what is seen from the ends.
+//!
+//! Interpolation errs there, in pictures and in bounces: a wall whose corners are lit is not lit behind the beam that leans
+//! on it. A quick look (few bands, few rays, the same directions at all three points) tells.
+
+use crate::directions::DirectionBank;
+use crate::gather::{Gatherer, Worker};
+use crate::passes::Monitor;
+use crate::progress::Stage;
+use crate::receivers::{FaceSums, Receiver};
+use crate::split::{Edge, edges, length, sorted};
+use crate::world::World;
+use crate::{Error, settings};
+use coeff_io::{Quality, Settings};
+use glam::Vec3;
+use rayon::prelude::*;
+use scene::{Mesh, Scene};
+use sh_math::Bands;
+use std::collections::{BTreeMap, HashSet};
+
+/// Bands of the look: what decides is where light can come from, not its detail.
+const BANDS: u32 = 3;
+/// Rays of the look.
+const RAYS: u32 = 64;
+/// Distance of the transfer in the middle from the mean of the ends', against an open receiver's, from where an edge bends:
+/// the tenth part of it costs a house three times the receivers and gains no accuracy that bounces need.
+const BEND: f32 = 0.15;
+
+/// What a point sees: transfer on the front and, for two-sided materials, on the back.
+type Look = Vec<f32>;
+
+/// The quick look at points of a scene.
+pub(crate) struct Bends<'a> {
+    world: &'a World<'a>,
+    bank: DirectionBank,
+    bands: Bands,
+    /// Per mesh and vertex.
+    vertices: Vec<Vec<Look>>,
+    /// Per mesh: edges that were looked at, with what their middle sees.
+    middles: Vec<BTreeMap<Edge, Look>>,
+}
+
+/// An edge by the bits of its ends' positions: the same for all meshes that share it.
+pub(crate) type Place = [[u32; 3]; 2];
+
+/// Where an edge lies.
+pub(crate) fn place(mesh: &Mesh, edge: Edge) -> Place {
+    let [a, b] = edge.map(|v| mesh.positions[v as usize].to_array().map(f32::to_bits));
+    [a.min(b), a.max(b)]
+}
+
+impl<'a> Bends<'a> {
+    /// Looks from every vertex of a scene that lies on the surfaces of `world`.
+    pub(crate) fn new(
+        world: &'a World<'a>,
+        scene: &Scene,
+        asked: &Settings,
+        monitor: &Monitor<'_>,
+    ) -> Result<Self, Error> {
+        let settings = Settings { bands: BANDS, quality: Quality::Rays(RAYS), ..settings::standard() };
+        let bands = Bands::new(BANDS).expect("a constant in range");
+        let bank = DirectionBank::new(bands, &Settings { seed: asked.seed, ..settings });
+        let mut bends =
+            Self { world, bank, bands, vertices: Vec::new(), middles: vec![BTreeMap::new(); scene.meshes.len()] };
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            let faces = FaceSums::of(mesh);
+            let receiver = |v: u32| {
+                let v = v as usize;
+                Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v)).0
+            };
+            let list: Vec<Receiver> = (0..mesh.positions.len() as u32).map(receiver).collect();
+            let looks = bends.look(&list, two_sided(scene, index), monitor)?;
+            bends.vertices.push(looks);
+        }
+        Ok(bends)
+    }
+
+    /// The edges longer than `shortest` along which transfer bends, looking only at those that are new.
+    pub(crate) fn find(
+        &mut self,
+        scene: &Scene,
+        shortest: f32,
+        monitor: &Monitor<'_>,
+    ) -> Result<HashSet<Place>, Error> {
+        let mut bent = HashSet::new();
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            let new = self.unseen(index, mesh, shortest);
+            let receivers: Vec<Receiver> = new.iter().map(|(edge, sums)| sums.receiver(mesh, *edge)).collect();
+            let looks = self.look(&receivers, two_sided(scene, index), monitor)?;
+            for ((edge, _), look) in new.into_iter().zip(looks) {
+                if self.bend(index, edge, &look) > BEND {
+                    bent.insert(place(mesh, edge));
+                }
+                self.middles[index].insert(edge, look);
+            }
+        }
+        Ok(bent)
+    }
+
+    /// Tells of vertices that took the middles of edges, in their order.
+    pub(crate) fn halved(&mut self, mesh: usize, middles: impl IntoIterator<Item = (Edge, u32)>) {
+        let mut new: Vec<(u32, Edge)> = middles.into_iter().map(|(edge, vertex)| (vertex, edge)).collect();
+        new.sort_unstable();
+        for (_, edge) in new {
+            let look = self.middles[mesh].remove(&edge).unwrap_or_default();
+            self.vertices[mesh].push(look);
+        }
+    }
+
+    fn unseen(&self, index: usize, mesh: &Mesh, shortest: f32) -> Vec<(Edge, EdgeSums)> {
+        let mut sums: BTreeMap<Edge, EdgeSums> = BTreeMap::new();
+        for triangle in &mesh.triangles {
+            for edge in edges(triangle).map(sorted) {
+                if length(mesh, edge) > shortest && !self.middles[index].contains_key(&edge) {
+                    sums.entry(edge).or_default().add(mesh, triangle);
+                }
+            }
+        }
+        sums.into_iter().collect()
+    }
+
+    /// How far the look from the middle is from the mean of the looks from the ends; the larger of both sides.
+    fn bend(&self, mesh: usize, [a, b]: Edge, middle: &Look) -> f32 {
+        let (a, b) = (&self.vertices[mesh][a as usize], &self.vertices[mesh][b as usize]);
+        if a.len() != middle.len() || b.len() != middle.len() {
+            return f32::INFINITY;
+        }
+        let away: Vec<f32> = middle.iter().zip(a.iter().zip(b)).map(|(m, (a, b))| m - 0.5 * (a + b)).collect();
+        let norm = |side: &[f32]| side.iter().map(|x| x * x).sum::<f32>().sqrt();
+        away.chunks_exact(self.bands.coefficients()).map(norm).fold(0.0, f32::max) / self.bank.open_norm as f32
+    }
+
+    fn look(&self, receivers: &[Receiver], two_sided: bool, monitor: &Monitor<'_>) -> Result<Vec<Look>, Error> {
+        let gatherer = Gatherer {
+            world: self.world,
+            bank: &self.bank,
+            bands: self.bands,
+            quality: Quality::Rays(RAYS),
+            visibility: true,
+            hits: false,
+            permanent: 0,
+            worth: 0.0,
+        };
+        let total = receivers.len() as u64;
+        monitor.begin(Stage::Refinement, total);
+        let one = |worker: &mut Worker, receiver: &Receiver| {
+            let mut look = Look::new();
+            if monitor.is_cancelled() {
+                return look;
+            }
+            let mut rays = 0;
+            for side in [Some(*receiver), two_sided.then(|| receiver.back())].into_iter().flatten() {
+                // The same directions everywhere: what is far away shifts nothing from point to point.
+                let (seen, _) = gatherer.direct(&side, 0, worker);
+                rays += seen.visibility_rays;
+                look.extend(seen.transfer);
+            }
+            monitor.receiver_done(Stage::Refinement, total, rays);
+            look
+        };
+        let looks = receivers.par_iter().map_init(Worker::new, one).collect();
+        monitor.check()?;
+        Ok(looks)
+    }
+}
+
+fn two_sided(scene: &Scene, mesh: usize) -> bool {
+    scene.materials[scene.meshes[mesh].material as usize].double_sided
+}
+
+/// Sums over the triangles on an edge.
+#[derive(Default)]
+struct EdgeSums {
+    normal: Vec3,
+    /// Area-weighted middle from the first vertex of the edge's first triangle on.
+    centre: Vec3,
+    area: f32,
+    from: Option<Vec3>,
+}
+
+impl EdgeSums {
+    fn add(&mut self, mesh: &Mesh, triangle: &[u32; 3]) {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+        let cross = (b - a).cross(c - a);
+        let from = *self.from.get_or_insert(a);
+        // Relative to a corner: far from the origin a sum of positions would lose digits.
+        self.centre += cross.length() * ((a - from) + (b - from) + (c - from)) / 3.0;
+        self.area += cross.length();
+        self.normal += cross;
+    }
+
+    fn receiver(&self, mesh: &Mesh, edge: Edge) -> Receiver {
+        let [a, b] = edge.map(|v| mesh.positions[v as usize]);
+        let middle = 0.5 * (a + b);
+        let shading = match mesh.normals.is_empty() {
+            true => None,
+            false => Some(edge.map(|v| mesh.normals[v as usize]).iter().sum()),
+        };
+        let centre = match self.from {
+            Some(from) if self.area > 0.0 => from + self.centre / self.area,
+            _ => middle,
+        };
+        Receiver::new(middle, shading, self.normal, centre).0
+    }
+}

@@ -1,0 +1,128 @@
+//! Rows of the effects that follow from the materials: they cost no rays of their own.
+
+use crate::material::{DIELECTRIC, Facts as Material};
+use crate::rows::{Table, Words, percent};
+use coeff_io::{Effect, PlanRow};
+
+/// Largest value of a fact over all materials.
+fn largest(table: &Table<'_>, value: impl Fn(&Material) -> f32) -> f32 {
+    table.facts.materials.iter().map(value).fold(0.0, f32::max)
+}
+
+pub(crate) fn masks(table: &Table<'_>) -> PlanRow {
+    let (f, d) = (table.facts, table.decisions);
+    let holes = largest(table, |m| m.holes);
+    let words = Words {
+        decision: if d.masks { "rays and drawing test the mask".into() } else { "opaque: no test".into() },
+        reason: match (f.masked.count(), f.holed.count()) {
+            (0, _) => "no material has an alpha mask".into(),
+            (n, 0) => format!("{n} materials have alpha masks, but no texel of theirs is below the cutoff"),
+            (n, m) => format!("of {n} materials with alpha masks {m} have texels below the cutoff"),
+        },
+        stake: holes,
+        at_stake: match f.holed.any() {
+            false => "nothing: no point of a surface is missing".into(),
+            true => format!("solid sheets and their shadows where up to {} is holes", percent(holes)),
+        },
+    };
+    table.row(Effect::Masks, d.masks, &f.holed, words)
+}
+
+pub(crate) fn specular(table: &Table<'_>) -> PlanRow {
+    let (f, d) = (table.facts, table.decisions);
+    let stake = if f.shiny.any() { largest(table, |m| if m.shines { m.reflectance } else { 0.0 }) } else { DIELECTRIC };
+    let words = Words {
+        decision: if d.specular { "reflection map".into() } else { "no reflection pipeline".into() },
+        reason: match f.shiny.count() {
+            0 => "every material is rough and dielectric, and so counts as matt".into(),
+            n => format!("{n} materials are metallic (over 0.05) or smooth (roughness below 0.6) somewhere"),
+        },
+        stake,
+        at_stake: match f.shiny.any() {
+            true => format!("reflections missing: up to {} of the light, at normal incidence", percent(stake)),
+            false => format!(
+                "the blurred sheen of matt surfaces, about {} of the light, is left out of the model",
+                percent(stake)
+            ),
+        },
+    };
+    let row = table.row(Effect::Specular, d.specular, &f.shiny, words);
+    PlanRow { bytes: if d.specular { f.gloss_bytes } else { 0 }, ..row }
+}
+
+pub(crate) fn normal_maps(table: &Table<'_>) -> PlanRow {
+    let (f, d) = (table.facts, table.decisions);
+    let stake = largest(table, |m| if m.shines && m.bumpy { m.reflectance } else { 0.0 });
+    let idle = match f.idle_bumps {
+        0 => String::new(),
+        n => format!("; {n} more are on matt materials, where they would bend nothing"),
+    };
+    let words = Words {
+        decision: if d.normal_maps { "bend reflections only".into() } else { "plain transfer".into() },
+        reason: match f.bumpy.count() {
+            0 => format!("no material that shines has a normal map{idle}"),
+            n => format!("{n} materials that shine have normal maps; the transfer takes the plain normals{idle}"),
+        },
+        stake,
+        at_stake: match f.bumpy.any() {
+            false => "nothing is drawn with them; creases in diffuse light are not modelled".into(),
+            true => format!("creases missing from reflections of up to {} of the light", percent(stake)),
+        },
+    };
+    let row = table.row(Effect::NormalMaps, d.normal_maps, &f.bumpy, words);
+    PlanRow { bytes: if d.normal_maps { f.bump_bytes + 16 * f.receivers } else { 0 }, ..row }
+}
+
+pub(crate) fn emission(table: &Table<'_>) -> PlanRow {
+    let (f, d) = (table.facts, table.decisions);
+    let stake = largest(table, |m| m.emission);
+    let words = Words {
+        decision: if d.emission { "drawn, lights nothing".into() } else { "nothing".into() },
+        reason: match f.emissive.count() {
+            0 => "no surface emits light".into(),
+            n => format!("{n} materials emit light"),
+        },
+        stake,
+        at_stake: match f.emissive.any() {
+            false => "nothing".into(),
+            true => format!("surfaces of radiance up to {stake:.2} drawn dark"),
+        },
+    };
+    let row = table.row(Effect::Emission, d.emission, &f.emissive, words);
+    PlanRow { bytes: if d.emission { f.glow_bytes } else { 0 }, ..row }
+}
+
+pub(crate) fn transmission(table: &Table<'_>) -> PlanRow {
+    let (f, d) = (table.facts, table.decisions);
+    let stake = largest(table, |m| m.passes);
+    let words = Words {
+        decision: if d.transmission { "rays pass, drawn clear".into() } else { "nothing".into() },
+        reason: match f.transmissive.count() {
+            0 => "every surface is opaque".into(),
+            n => format!("{n} materials blend or transmit"),
+        },
+        stake,
+        at_stake: match f.transmissive.any() {
+            false => "nothing".into(),
+            true => format!("up to {} of the light behind them kept out", percent(stake)),
+        },
+    };
+    table.row(Effect::Transmission, d.transmission, &f.transmissive, words)
+}
+
+pub(crate) fn motion(table: &Table<'_>) -> PlanRow {
+    let moving = &table.facts.moving;
+    let words = Words {
+        decision: if moving.any() { "not simulated: baked at rest".into() } else { "nothing".into() },
+        reason: match moving.count() {
+            0 => "no animation or skin moves a mesh".into(),
+            n => format!("animations or skins move {n} meshes"),
+        },
+        stake: f32::from(u8::from(moving.any())),
+        at_stake: match moving.any() {
+            false => "nothing".into(),
+            true => "their shadows and bounces stay where they were: up to all light near them".into(),
+        },
+    };
+    table.row(Effect::Motion, false, moving, words)
+}

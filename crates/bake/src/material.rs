@@ -1,0 +1,180 @@
+//! What a material can do to light at most, over all its texels and vertex colours: the facts that plans rest on.
+
+use crate::albedo::{Albedo, Colors};
+use scene::{AlphaMode, Material, Scene};
+
+/// Perceptual roughness below which a dielectric shows a reflection that is worth drawing.
+const SHINY: f32 = 0.6;
+/// Metallic share above which a surface shows a reflection.
+const METALLIC: f32 = 0.05;
+/// Reflectance of dielectrics at normal incidence (an index of refraction of 1.5).
+pub(crate) const DIELECTRIC: f32 = 0.04;
+
+/// Bounds over a whole material. A material that no triangle shows does nothing.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Facts {
+    /// Diffuse albedo.
+    pub(crate) albedo: Albedo,
+    /// Whether rays stop at it.
+    pub(crate) blocks: bool,
+    /// Whether it blends or transmits.
+    pub(crate) transmits: bool,
+    /// Whether it has an alpha mask.
+    pub(crate) masked: bool,
+    /// Share of the mask's texels below the cutoff, at most; 0 only where no point of the surface can be missing.
+    pub(crate) holes: f32,
+    /// Whether it shows a reflection that is worth drawing.
+    pub(crate) shines: bool,
+    /// Largest reflectance at normal incidence.
+    pub(crate) reflectance: f32,
+    /// Whether it has a normal map.
+    pub(crate) bumpy: bool,
+    /// Largest radiance that it emits.
+    pub(crate) emission: f32,
+    /// Largest share of light that passes through.
+    pub(crate) passes: f32,
+}
+
+impl Facts {
+    /// Looks at every texel and vertex colour of one material.
+    pub(crate) fn of(scene: &Scene, index: usize) -> Self {
+        let material = &scene.materials[index];
+        let albedo = Albedo::of(scene, index);
+        if !shown(scene, index) {
+            return Self::nothing(albedo);
+        }
+        let gloss = Colors::linear(scene, material.metallic_roughness_texture);
+        let metallic = material.metallic * gloss.largest.z;
+        let color = Colors::srgb(scene, material.base_color_texture).largest * material.base_color.truncate();
+        let glow = Colors::srgb(scene, material.emissive_texture).largest * material.emissive;
+        Self {
+            albedo,
+            blocks: material.blocks_rays(),
+            transmits: !material.blocks_rays(),
+            masked: material.is_masked(),
+            holes: hole_share(scene, index),
+            shines: metallic > METALLIC || material.roughness * gloss.smallest.y < SHINY,
+            reflectance: DIELECTRIC.max(metallic * color.max_element()).min(1.0),
+            bumpy: material.normal_texture.is_some(),
+            emission: glow.max_element(),
+            passes: passes(scene, material, index),
+        }
+    }
+
+    fn nothing(albedo: Albedo) -> Self {
+        Self {
+            albedo,
+            blocks: false,
+            transmits: false,
+            masked: false,
+            holes: 0.0,
+            shines: false,
+            reflectance: 0.0,
+            bumpy: false,
+            emission: 0.0,
+            passes: 0.0,
+        }
+    }
+
+    /// Whether a surface of this material scatters no light, whatever arrives.
+    pub(crate) fn is_black(&self) -> bool {
+        self.albedo.largest <= 0.0
+    }
+}
+
+/// Share of the texels of a mask that lie below its cutoff where the vertices cover least. Where it is 0 no filtered
+/// value lies below, so no point of the surface is missing.
+pub(crate) fn hole_share(scene: &Scene, index: usize) -> f32 {
+    let material = &scene.materials[index];
+    let AlphaMode::Mask(cutoff) = material.alpha else { return 0.0 };
+    let factor = material.base_color.w * vertex_alpha(scene, index);
+    let missing = |alpha: f32| factor * alpha < cutoff;
+    match material.base_color_texture.map(|slot| &scene.textures[slot.texture as usize]) {
+        None => f32::from(u8::from(missing(1.0))),
+        Some(texture) => {
+            let count = texture.rgba.iter().filter(|texel| missing(f32::from(texel[3]) / 255.0)).count();
+            count as f32 / texture.rgba.len().max(1) as f32
+        }
+    }
+}
+
+/// Largest share of light that passes through a surface that transmits or blends.
+fn passes(scene: &Scene, material: &Material, index: usize) -> f32 {
+    if material.alpha != AlphaMode::Blend {
+        return material.transmission;
+    }
+    let texels = material.base_color_texture.map(|slot| &scene.textures[slot.texture as usize].rgba);
+    let least = texels.and_then(|t| t.iter().map(|texel| texel[3]).min()).map_or(1.0, |a| f32::from(a) / 255.0);
+    let covered = material.base_color.w * vertex_alpha(scene, index) * least;
+    (1.0 - covered * (1.0 - material.transmission)).clamp(0.0, 1.0)
+}
+
+/// The least alpha of the vertex colours of a material; 1 where there are none.
+fn vertex_alpha(scene: &Scene, index: usize) -> f32 {
+    let meshes = scene.meshes.iter().filter(|mesh| mesh.material as usize == index);
+    meshes.flat_map(|mesh| &mesh.colors).map(|color| color.w).fold(1.0, f32::min)
+}
+
+fn shown(scene: &Scene, index: usize) -> bool {
+    scene.meshes.iter().any(|mesh| mesh.material as usize == index && !mesh.triangles.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Affine2, Vec3, Vec4};
+    use scene::{Mesh, Texture, TextureSlot};
+
+    fn slot() -> Option<TextureSlot> {
+        Some(TextureSlot { texture: 0, uv_set: 0, transform: Affine2::IDENTITY })
+    }
+
+    fn facts(material: Material, texels: &[[u8; 4]]) -> Facts {
+        let mesh = Mesh { positions: vec![Vec3::ZERO; 3], triangles: vec![[0, 1, 2]], ..Mesh::default() };
+        let texture = Texture { rgba: texels.to_vec(), width: texels.len() as u32, ..Texture::white("t") };
+        let scene =
+            Scene { meshes: vec![mesh], materials: vec![material], textures: vec![texture], ..Scene::default() };
+        Facts::of(&scene, 0)
+    }
+
+    /// A mask whose every texel is there hides nothing; one texel below the cutoff is a hole.
+    #[test]
+    fn only_texels_below_the_cutoff_are_holes() {
+        let leaf = || Material { alpha: AlphaMode::Mask(0.5), base_color_texture: slot(), ..Material::default() };
+        assert_eq!(facts(leaf(), &[[255; 4], [0, 0, 0, 128]]).holes, 0.0);
+        assert_eq!(facts(leaf(), &[[255; 4], [0, 0, 0, 127]]).holes, 0.5, "can fail");
+        let thin = Material { base_color: Vec4::new(1.0, 1.0, 1.0, 0.25), ..leaf() };
+        assert_eq!(facts(thin, &[[255; 4]]).holes, 1.0, "the factor alone is below the cutoff");
+        let opaque = Material { alpha: AlphaMode::Opaque, ..leaf() };
+        assert_eq!(facts(opaque, &[[0; 4]]).holes, 0.0, "an opaque material has no holes");
+    }
+
+    /// The texture tells where a surface is smooth or metal, not the factors.
+    #[test]
+    fn shine_is_found_in_the_texture() {
+        let painted = |metallic, roughness| Material {
+            metallic,
+            roughness,
+            metallic_roughness_texture: slot(),
+            ..Material::default()
+        };
+        assert!(facts(painted(0.0, 1.0), &[[0, 255, 0, 255], [0, 20, 0, 255]]).shines, "a smooth texel");
+        assert!(facts(painted(1.0, 1.0), &[[0, 255, 0, 255], [0, 255, 255, 255]]).shines, "a metal texel");
+        assert!(!facts(painted(1.0, 1.0), &[[0, 255, 0, 255]]).shines, "can fail: rough and no metal");
+    }
+
+    #[test]
+    fn a_black_emission_texture_emits_nothing() {
+        let lamp = Material { emissive: Vec3::splat(3.0), emissive_texture: slot(), ..Material::default() };
+        assert_eq!(facts(lamp.clone(), &[[0, 0, 0, 255]]).emission, 0.0);
+        assert_eq!(facts(lamp, &[[255; 4]]).emission, 3.0, "can fail");
+    }
+
+    #[test]
+    fn glass_passes_what_it_does_not_cover() {
+        let pane = Material { alpha: AlphaMode::Blend, base_color: Vec4::splat(0.25), ..Material::default() };
+        assert_eq!(facts(pane, &[[255; 4]]).passes, 0.75);
+        let clear = Material { transmission: 0.9, ..Material::default() };
+        assert_eq!(facts(clear, &[[255; 4]]).passes, 0.9);
+    }
+}

@@ -1,0 +1,115 @@
+//! What a bake will take: some receivers are baked for trial, on a clock that the caller brings.
+
+use crate::bake::{NEAR_WORTH, refined};
+use crate::directions::DirectionBank;
+use crate::field::Field;
+use crate::gather::{Gathered, Gatherer, Worker};
+use crate::passes::{Chunk, Monitor, bounce_pass};
+use crate::plan::{Prepared, prepare, simulates, tolerance};
+use crate::progress::Stage;
+use crate::receivers::morton_order;
+use crate::{Error, settings};
+use coeff_io::{Effect, Plan, Settings};
+use rayon::prelude::*;
+use scene::Scene;
+use sh_math::Bands;
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+/// Receivers that are tried, in runs of neighbours as a bake takes them.
+const RUNS: usize = 16;
+const RUN: usize = 16;
+
+/// A plan with what it will take on this machine. Never part of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Price {
+    /// The plan; its rays are those that the trial leads to expect.
+    pub plan: Plan,
+    /// Seconds to split the scene, build the tree and decide.
+    pub preparation: f64,
+    /// Seconds of the any-hit rays.
+    pub visibility: f64,
+    /// Seconds of the closest-hit rays and of the bounces that are expected.
+    pub interreflection: f64,
+    /// Receivers that were tried.
+    pub tried: u64,
+}
+
+/// Decides which effects a scene calls for and tries a few hundred receivers; `now` tells the time since any fixed moment.
+///
+/// # Errors
+/// As [`crate::bake`].
+pub fn price(scene: &Scene, settings: &Settings, now: &dyn Fn() -> Duration) -> Result<Price, Error> {
+    settings::check(settings)?;
+    let began = now();
+    let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
+    let prepared = prepare(scene, settings)?;
+    let preparation = (now() - began).as_secs_f64();
+    let mut price = Price { plan: prepared.plan.clone(), preparation, visibility: 0.0, interreflection: 0.0, tried: 0 };
+    if simulates(&price.plan, Effect::Visibility) && !prepared.traced.is_empty() {
+        try_out(&prepared, settings, now, &mut price)?;
+    }
+    Ok(price)
+}
+
+/// Bakes some receivers: without looking up what blocks, with it, and one bounce.
+fn try_out(
+    prepared: &Prepared<'_>,
+    settings: &Settings,
+    now: &dyn Fn() -> Duration,
+    price: &mut Price,
+) -> Result<(), Error> {
+    let Prepared { world, receivers, plan, traced } = prepared;
+    let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
+    let bank = DirectionBank::new(bands, settings);
+    let hits = simulates(plan, Effect::Interreflection);
+    let quality = settings.quality;
+    let (permanent, worth) = (receivers.permanent as u32, NEAR_WORTH * tolerance(quality));
+    let gatherer = Gatherer { world, bank: &bank, bands, quality, visibility: true, hits, permanent, worth };
+    let runs = runs(&morton_order(&receivers.list, traced.iter().copied()));
+    let gather = |gatherer: &Gatherer<'_>| -> (Vec<Vec<Gathered>>, f64) {
+        let start = now();
+        let run = |worker: &mut Worker, run: &Vec<u32>| {
+            run.iter().map(|&id| gatherer.gather(&receivers.list[id as usize], id, worker)).collect()
+        };
+        (runs.par_iter().map_init(Worker::new, run).collect(), (now() - start).as_secs_f64())
+    };
+    // The first turn warms the caches.
+    let direct = Gatherer { hits: false, ..gatherer };
+    gather(&direct);
+    let (seen, visibility) = gather(&direct);
+    let tried = seen.iter().map(|run| run.len() as u64).sum::<u64>();
+    let scale = traced.len() as f64 / tried as f64;
+    price.tried = tried;
+    price.visibility = visibility * scale;
+    let rays = |seen: &[Vec<Gathered>], of: fn(&Gathered) -> u64| seen.iter().flatten().map(of).sum::<u64>() as f64;
+    set_rays(&mut price.plan, Effect::Visibility, rays(&seen, |g| g.visibility_rays) * scale);
+    if hits {
+        let (seen, both) = gather(&gatherer);
+        set_rays(&mut price.plan, Effect::Interreflection, rays(&seen, |g| g.bounce_rays) * scale);
+        let chunks: Vec<Chunk> = runs.iter().zip(&seen).map(|(ids, seen)| Chunk::of(ids.clone(), seen)).collect();
+        let last = Field::zeros(receivers.list.len(), bands.coefficients(), plan.channels as usize);
+        let start = now();
+        let monitor = Monitor::new(&|_| ControlFlow::Continue(()));
+        bounce_pass(&gatherer, receivers, &chunks, &last, Stage::Bounce(1), &monitor)?;
+        let bounce = (now() - start).as_secs_f64();
+        // Receivers at near points are looked from too; those on backs of surfaces are not foreseen.
+        let near = rays(&seen, |g| g.near.len() as u64) / tried as f64;
+        let lookups = (both - visibility).max(0.0) + near * both;
+        price.interreflection = scale * (lookups + bounce * f64::from(plan.expected_bounces));
+    }
+    Ok(())
+}
+
+/// Runs of neighbours, evenly spread over the order; all of them where there are few.
+fn runs(order: &[u32]) -> Vec<Vec<u32>> {
+    let all: Vec<&[u32]> = order.chunks(RUN).collect();
+    let count = all.len().min(RUNS);
+    (0..count).map(|k| all[(2 * k + 1) * all.len() / (2 * count)].to_vec()).collect()
+}
+
+fn set_rays(plan: &mut Plan, effect: Effect, rays: f64) {
+    for row in plan.rows.iter_mut().filter(|row| row.effect == effect) {
+        row.rays = rays as u64;
+    }
+}

@@ -1,0 +1,93 @@
+//! Splits edges of a mesh without changing its surface.
+
+use glam::{Vec3, Vec4};
+use scene::Mesh;
+use std::collections::HashMap;
+
+/// Most triangles that a mesh may be split into.
+pub(crate) const MOST_TRIANGLES: usize = 1 << 23;
+
+/// An edge by its vertices, the smaller first.
+pub(crate) type Edge = [u32; 2];
+
+/// The edges of a triangle, in its winding.
+pub(crate) fn edges(&[a, b, c]: &[u32; 3]) -> [Edge; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+/// An edge with the smaller vertex first.
+pub(crate) fn sorted([a, b]: Edge) -> Edge {
+    [a.min(b), a.max(b)]
+}
+
+/// Length of an edge, metres.
+pub(crate) fn length(mesh: &Mesh, [a, b]: Edge) -> f32 {
+    mesh.positions[a as usize].distance(mesh.positions[b as usize])
+}
+
+/// Halves every edge that `wanted` names once, and returns the new vertices by the edges that they halve. Vertices keep
+/// their indices, new ones follow.
+pub(crate) fn halve(mesh: &mut Mesh, wanted: impl Fn(&Mesh, Edge) -> bool) -> HashMap<Edge, u32> {
+    let mut middles = HashMap::new();
+    let mut triangles = Vec::with_capacity(mesh.triangles.len());
+    for triangle in std::mem::take(&mut mesh.triangles) {
+        let cut = edges(&triangle).map(|edge| {
+            let edge = sorted(edge);
+            wanted(mesh, edge).then(|| *middles.entry(edge).or_insert_with(|| add_middle(mesh, edge)))
+        });
+        triangles.extend(pieces(mesh, triangle, cut));
+    }
+    mesh.triangles = triangles;
+    middles
+}
+
+/// The parts of a triangle whose edges ab, bc, ca are cut at the given vertices.
+fn pieces(mesh: &Mesh, [a, b, c]: [u32; 3], cut: [Option<u32>; 3]) -> Vec<[u32; 3]> {
+    match cut {
+        [None, None, None] => vec![[a, b, c]],
+        [Some(ab), None, None] => vec![[a, ab, c], [ab, b, c]],
+        [None, Some(bc), None] => vec![[b, bc, a], [bc, c, a]],
+        [None, None, Some(ca)] => vec![[c, ca, b], [ca, a, b]],
+        [Some(ab), Some(bc), None] => corner_cut(mesh, [b, c, a], bc, ab),
+        [None, Some(bc), Some(ca)] => corner_cut(mesh, [c, a, b], ca, bc),
+        [Some(ab), None, Some(ca)] => corner_cut(mesh, [a, b, c], ab, ca),
+        [Some(ab), Some(bc), Some(ca)] => vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]],
+    }
+}
+
+/// Cuts corner `a` off at `ab` and `ca`; the rest is halved along its shorter diagonal.
+fn corner_cut(mesh: &Mesh, [a, b, c]: [u32; 3], ab: u32, ca: u32) -> Vec<[u32; 3]> {
+    let mut parts = vec![[a, ab, ca]];
+    if length(mesh, [ab, c]) <= length(mesh, [b, ca]) {
+        parts.extend([[ab, b, c], [ab, c, ca]]);
+    } else {
+        parts.extend([[ab, b, ca], [b, c, ca]]);
+    }
+    parts
+}
+
+/// Adds the vertex half-way along an edge.
+fn add_middle(mesh: &mut Mesh, [a, b]: Edge) -> u32 {
+    let (a, b) = (a as usize, b as usize);
+    let index = mesh.positions.len() as u32;
+    mesh.positions.push(0.5 * (mesh.positions[a] + mesh.positions[b]));
+    if !mesh.normals.is_empty() {
+        let normal: Vec3 = mesh.normals[a] + mesh.normals[b];
+        mesh.normals.push(normal.try_normalize().unwrap_or(mesh.normals[a]));
+    }
+    if !mesh.tangents.is_empty() {
+        let (ta, tb): (Vec4, Vec4) = (mesh.tangents[a], mesh.tangents[b]);
+        let tangent = (ta + tb).truncate().try_normalize().unwrap_or(ta.truncate());
+        mesh.tangents.push(tangent.extend(ta.w));
+    }
+    if !mesh.uv0.is_empty() {
+        mesh.uv0.push(0.5 * (mesh.uv0[a] + mesh.uv0[b]));
+    }
+    if !mesh.uv1.is_empty() {
+        mesh.uv1.push(0.5 * (mesh.uv1[a] + mesh.uv1[b]));
+    }
+    if !mesh.colors.is_empty() {
+        mesh.colors.push(0.5 * (mesh.colors[a] + mesh.colors[b]));
+    }
+    index
+}

@@ -1,0 +1,150 @@
+//! Prints how many rays a fixed number per receiver takes to reach the error that adaptive rays reach:
+//! `rays_for_error [SCENE ...]`, with a city and foliage of its own where none is named.
+//!
+//! Error: 95th percentile over receivers of |T - truth| against an open receiver's |T|; the truth has 32,768 rays and another seed.
+
+#![expect(clippy::print_stdout, reason = "an example that prints a table")]
+
+use bake::{Sampled, sample};
+use coeff_io::{Quality, Refine, Sampler, Settings};
+use glam::Vec3;
+use sampling::rng::Rng;
+use scene::{Material, Mesh, Scene};
+use std::error::Error;
+use std::path::Path;
+
+/// Receivers looked at in each scene.
+const RECEIVERS: usize = 120;
+/// Errors asked of the adaptive bake.
+const ASKED: [f32; 2] = [0.02, 0.01];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let names: Vec<String> = std::env::args().skip(1).collect();
+    let mut scenes = Vec::new();
+    for name in &names {
+        scenes.push(match name.strip_prefix("builtin:") {
+            Some(builtin) => scene::builtin(builtin).ok_or("no such scene")?,
+            None => scene::load(Path::new(name))?,
+        });
+    }
+    if names.is_empty() {
+        scenes = vec![city(), foliage()];
+    }
+    println!(
+        "| scene | asked | 95 % of errors below | rays | fixed Owen-Sobol | ratio | fixed jittered sphere | ratio |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    for scene in &scenes {
+        report(scene)?;
+    }
+    Ok(())
+}
+
+fn report(scene: &Scene) -> Result<(), Box<dyn Error>> {
+    let truth = look(scene, Sampler::OwenSobol, Quality::Rays(1 << 15), 1000)?;
+    let fixed = |sampler| -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
+        (7..=14).map(|power| Ok(measured(&look(scene, sampler, Quality::Rays(1 << power), 1)?, &truth))).collect()
+    };
+    let (sobol, stratified) = (fixed(Sampler::OwenSobol)?, fixed(Sampler::Stratified)?);
+    for asked in ASKED {
+        let [error, rays] = measured(&look(scene, Sampler::OwenSobol, Quality::Error(asked), 1)?, &truth);
+        let [a, b] = [&sobol, &stratified].map(|curve| rays_at(curve, error));
+        let tell = |n: Option<f64>| {
+            n.map_or(["> 16384".into(), "-".into()], |n| [format!("{n:.0}"), format!("{:.1}", n / rays)])
+        };
+        let ([a, ra], [b, rb]) = (tell(a), tell(b));
+        println!("| {} | {asked} | {error:.4} | {rays:.0} | {a} | {ra} | {b} | {rb} |", scene.name);
+    }
+    Ok(())
+}
+
+fn look(scene: &Scene, sampler: Sampler, quality: Quality, seed: u64) -> Result<Vec<Sampled>, bake::Error> {
+    sample(scene, &Settings { sampler, quality, seed, refine: Refine::Off, ..bake::settings::standard() }, RECEIVERS)
+}
+
+/// 95th percentile of the true error, and mean rays traced.
+fn measured(judged: &[Sampled], truth: &[Sampled]) -> [f64; 2] {
+    let open = sh_math::Bands::new(bake::settings::standard().bands).map_or(1.0, |bands| {
+        let mut lobe = vec![0.0f32; bands.coefficients()];
+        sh_math::zonal::cosine_transfer(bands, Vec3::Z, &mut lobe);
+        norm(lobe.iter().copied())
+    });
+    let mut errors: Vec<f64> = judged
+        .iter()
+        .zip(truth)
+        .map(|(a, b)| norm(a.transfer.iter().zip(&b.transfer).map(|(x, y)| x - y)) / open)
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    let rays = judged.iter().map(|j| j.rays as f64).sum::<f64>() / judged.len() as f64;
+    [errors[errors.len() * 95 / 100], rays]
+}
+
+fn norm(values: impl Iterator<Item = f32>) -> f64 {
+    values.map(|x| f64::from(x).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Rays at which a curve of [error, rays] comes down to an error, between its points along a power law.
+fn rays_at(curve: &[[f64; 2]], error: f64) -> Option<f64> {
+    let step = curve.windows(2).find(|w| w[0][0] > error && w[1][0] <= error)?;
+    let [[e0, n0], [e1, n1]] = [step[0], step[1]];
+    Some(n0 * (n1 / n0).powf((e0 / error).ln() / (e0 / e1).ln()))
+}
+
+/// A block of streets: boxes of 10 to 60 m on a ground of 300 m.
+fn city() -> Scene {
+    let mut rng = Rng::new(7, 0);
+    let mut mesh = ground(150.0, 60);
+    for i in 0..144 {
+        let corner = Vec3::new((i % 12) as f32 * 20.0 - 120.0, 0.0, (i / 12) as f32 * 20.0 - 120.0);
+        add_box(&mut mesh, corner, Vec3::new(13.0, 10.0 + 50.0 * rng.next_f32(), 13.0), 4);
+    }
+    finished("city", mesh)
+}
+
+/// 6,000 leaves of 5 cm over a ground of 2 m.
+fn foliage() -> Scene {
+    let mut rng = Rng::new(8, 0);
+    let mut mesh = ground(1.0, 60);
+    for _ in 0..6000 {
+        let mut vector = || Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) - 0.5;
+        let (middle, a, b) = (vector() * Vec3::new(2.0, 0.8, 2.0) + Vec3::Y * 0.6, vector() * 0.1, vector() * 0.1);
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend([middle, middle + a, middle + b]);
+        mesh.normals.extend([a.cross(b).normalize_or(Vec3::Y); 3]);
+        mesh.triangles.push([first, first + 1, first + 2]);
+    }
+    finished("foliage", mesh)
+}
+
+fn finished(name: &str, mesh: Mesh) -> Scene {
+    let material = Material { double_sided: true, ..Material::default() };
+    Scene { name: name.into(), meshes: vec![mesh], materials: vec![material], ..Scene::default() }
+}
+
+fn ground(half: f32, cells: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    add_grid(&mut mesh, Vec3::new(-half, 0.0, half), Vec3::X * 2.0 * half, Vec3::Z * -2.0 * half, cells);
+    mesh
+}
+
+fn add_box(mesh: &mut Mesh, low: Vec3, size: Vec3, cells: u32) {
+    let [x, y, z] = [Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z];
+    for (corner, along, across) in
+        [(low, y, x), (low, z, y), (low + size, -x, -y), (low + size, -y, -z), (low + size, -z, -x)]
+    {
+        add_grid(mesh, corner, along, across, cells);
+    }
+}
+
+fn add_grid(mesh: &mut Mesh, corner: Vec3, along: Vec3, across: Vec3, cells: u32) {
+    let (first, n) = (mesh.positions.len() as u32, cells + 1);
+    for i in 0..n * n {
+        mesh.positions
+            .push(corner + along * ((i % n) as f32 / cells as f32) + across * ((i / n) as f32 / cells as f32));
+        mesh.normals.push(along.cross(across).normalize());
+    }
+    for k in 0..cells * cells {
+        let a = first + (k % cells) + (k / cells) * n;
+        mesh.triangles.extend([[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]);
+    }
+}
