@@ -4,6 +4,7 @@ mod arguments;
 mod bake;
 mod columns;
 mod console;
+mod cost;
 mod draw;
 mod export;
 mod inspect;
@@ -53,6 +54,7 @@ fn run(arguments: &Arguments, console: &Console) -> anyhow::Result<()> {
         Command::Reference(options) => reference::run(options, console),
         Command::Inspect(options) => inspect::run(options, console),
         Command::Export(options) => export::run(options, console),
+        Command::Cost(options) => cost::run(options, console),
         Command::Light(options) => light::run(options, console),
         Command::List => list::run(console),
     }

@@ -184,7 +184,8 @@ fn seconds(text: &str) -> Result<f32, String> {
     if seconds > 0.0 && seconds.is_finite() { Ok(seconds) } else { Err(wrong()) }
 }
 
-fn bytes(text: &str) -> Result<u64, String> {
+/// Parses a number of bytes with K, M or G.
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
     let (digits, unit) = match text.char_indices().next_back() {
         Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
         Some((at, 'M' | 'm')) => (&text[..at], 1 << 20),

@@ -1,1 +1,4 @@
 //! Accuracy against time, measured by calling the public crates as any user would: sweeps over settings, Pareto fronts, tables and plots.
+
+pub mod cost;
+pub mod plot;

@@ -1,0 +1,175 @@
+//! The tables of the page.
+
+use super::super::predict::{Check, Prediction};
+use super::super::report::{Knob, Report, Run};
+use super::insight::insight;
+use super::{bytes, escaped, seconds, share};
+
+/// Width of the longest bar, in em.
+const LONGEST_BAR: f64 = 5.0;
+
+/// All runs, knob by knob.
+pub(super) fn runs(report: &Report) -> String {
+    let worst = report.runs.iter().map(|run| run.transfer.p95).fold(0.0, f64::max);
+    let least = report.runs.iter().map(|run| run.transfer.p95).filter(|e| *e > 0.0).fold(worst, f64::min);
+    let groups: String = Knob::ALL.iter().map(|&knob| group(report, knob, [least, worst])).collect();
+    format!(
+        "<h2>Knob by knob</h2>\n<p>One knob is turned at a time. The shaded row is the bake as asked; &#9670; marks runs on the front \
+         of time. Bars are logarithmic.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>options</th><th>error, 95 %</th>\
+         <th>median</th><th>worst</th><th>radiance</th><th>against {} bands</th><th>time</th><th>rays / receiver</th><th>bounces</th>\
+         <th>bytes</th></tr></thead>\n{groups}</table></div>\n",
+        report.reference.bands
+    )
+}
+
+fn group(report: &Report, knob: Knob, range: [f64; 2]) -> String {
+    let rows: String = report
+        .runs
+        .iter()
+        .enumerate()
+        .filter(|(_, run)| run.knob == knob)
+        .map(|(i, _)| row(report, i, range))
+        .collect();
+    if rows.is_empty() {
+        return rows;
+    }
+    let said = insight(report, knob).map_or(String::new(), |said| format!(" <span>{}</span>", escaped(&said)));
+    format!("<tbody>\n<tr><th colspan=\"10\">{knob}{said}</th></tr>\n{rows}</tbody>\n")
+}
+
+fn row(report: &Report, index: usize, [least, worst]: [f64; 2]) -> String {
+    let run = &report.runs[index];
+    let p95 = run.transfer.p95;
+    let part = if p95 > 0.0 && worst > least { (p95 / least).ln() / (worst / least).ln() } else { 0.0 };
+    let width = 0.3 + part.clamp(0.0, 1.0) * (LONGEST_BAR - 0.3);
+    let class = match (index == report.shown, report.fast_front.contains(&index)) {
+        (true, true) => " class=\"asked front\"",
+        (true, false) => " class=\"asked\"",
+        (false, true) => " class=\"front\"",
+        (false, false) => "",
+    };
+    format!(
+        "<tr{class}><td>{}</td><td><span class=\"bar\" style=\"width:{width:.2}em\"></span>{}</td><td>{}</td><td>{}</td><td>{}</td>\
+         <td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        options(run),
+        share(p95),
+        share(run.transfer.median),
+        share(run.transfer.worst),
+        share(run.radiance),
+        run.radiance_all_bands.map_or(String::new(), share),
+        seconds(run.seconds),
+        rays(report, run),
+        run.bounces,
+        bytes(run.bytes),
+    )
+}
+
+fn options(run: &Run) -> String {
+    if run.can_be_typed { format!("<code>{}</code>", escaped(&run.setting)) } else { escaped(&run.setting) }
+}
+
+/// Visibility rays per receiver that something can shadow.
+fn rays(report: &Report, run: &Run) -> String {
+    format!("{:.0}", run.rays[0] as f64 / report.receivers[1].max(1) as f64)
+}
+
+/// Meshes against the finest one.
+pub(super) fn resolution(report: &Report) -> String {
+    let Some(resolution) = &report.resolution else { return String::new() };
+    let last = resolution.runs.len() - 1;
+    let row = |(index, (run, edge)): (usize, (&Run, &f64))| {
+        let errors = if index == last {
+            "<td>compared with</td><td></td>".to_owned()
+        } else {
+            format!("<td>{}</td><td>{}</td>", share(run.radiance), share(run.transfer.p95))
+        };
+        format!(
+            "<tr><td>{}</td><td>{edge:.3} m</td><td>{}</td>{errors}<td>{}</td><td>{}</td></tr>\n",
+            options(run),
+            run.receivers,
+            seconds(run.seconds),
+            bytes(run.bytes)
+        )
+    };
+    let rows: String = resolution.runs.iter().zip(&resolution.edges).enumerate().map(row).collect();
+    format!(
+        "<h2>Storage resolution</h2>\n<p>Vertices carry the transfer. Each mesh is read, by interpolation, at the vertices of the finest; \
+         the noise of both bakes is in the numbers.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>options</th><th>longest edge</th>\
+         <th>receivers</th><th>radiance</th><th>error, 95 %</th><th>time</th><th>bytes</th></tr></thead>\n<tbody>\n{rows}</tbody>\n\
+         </table></div>\n"
+    )
+}
+
+/// Time per picture.
+pub(super) fn frames(report: &Report) -> String {
+    let row = |frames: &super::super::Frames| {
+        format!(
+            "<tr><td>{}</td><td>{}</td><td>{:.2} ms</td><td>{}</td></tr>\n",
+            escaped(&frames.renderer),
+            frames.bands,
+            frames.milliseconds,
+            frames.count
+        )
+    };
+    let rows: String = report.frames.iter().map(row).collect();
+    let [width, height] = super::super::frames::SIZE;
+    format!(
+        "<h2>Each picture</h2>\n<p>Median time of a picture of {width} by {height} pixels whose light turns, so that every vertex is lit \
+         anew; one picture before is not counted, and nothing is read back from a GPU.</p>\n<div class=\"wide\"><table>\n<thead><tr>\
+         <th>renderer</th><th>bands</th><th>per picture</th><th>pictures</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
+    )
+}
+
+/// What was predicted, and what came.
+pub(super) fn predictions(report: &Report) -> String {
+    let rows: String = report.checks.iter().map(prediction).collect();
+    format!(
+        "<h2>Predicted and measured</h2>\n<p>Before a bake starts its time is predicted from three short ones: 64 fixed rays, the \
+         coarsest error level, and four times the error asked for. The error of each receiver at the coarsest level gives the rays that \
+         it will need (error falls with rays to the power of -3/4, in doublings), scaled by what the third bake needed; time is rays \
+         times seconds per ray, plus bounces times surfaces seen times seconds per surface.</p>\n<div class=\"wide\"><table>\n<thead>\
+         <tr><th>bake</th><th>predicted</th><th>came</th><th>predicted / came</th><th>rays / receiver</th><th>bounces</th></tr></thead>\n\
+         <tbody>\n{rows}</tbody>\n</table></div>\n"
+    )
+}
+
+fn prediction(check: &Check) -> String {
+    let p = &check.predicted;
+    let [came, ratio] = match &check.came {
+        Some(came) => [seconds(came.seconds), format!("{:.2}", p.seconds / came.seconds)],
+        None => ["not run: see what was left out".to_owned(), String::new()],
+    };
+    let pair = |of: &dyn Fn(&Prediction) -> String| match &check.came {
+        Some(came) => format!("{} / {}", of(p), of(came)),
+        None => of(p),
+    };
+    format!(
+        "<tr><td>{}</td><td>{}</td><td>{came}</td><td>{ratio}</td><td>{}</td><td>{}</td></tr>\n",
+        escaped(&check.name),
+        seconds(p.seconds),
+        pair(&|p| format!("{:.0}", p.rays_per_receiver)),
+        pair(&|p| p.bounces.to_string()),
+    )
+}
+
+/// The receivers that err most.
+pub(super) fn worst(report: &Report) -> String {
+    let row = |receiver: &super::super::report::WorstReceiver| {
+        let [x, y, z] = receiver.position;
+        format!(
+            "<tr><td>{}</td><td>{}</td><td>{x:.3}, {y:.3}, {z:.3}</td><td>{}</td></tr>\n",
+            receiver.index,
+            escaped(&receiver.object),
+            share(f64::from(receiver.error))
+        )
+    };
+    let rows: String = report.worst.iter().map(row).collect();
+    if rows.is_empty() {
+        return rows;
+    }
+    format!(
+        "<h2>Worst receivers</h2>\n<p>Of <code>{}</code>.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>vertex</th><th>object</th>\
+         <th>position, m</th><th>error</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n",
+        escaped(&report.runs[report.shown].setting)
+    )
+}

@@ -1,0 +1,220 @@
+//! How finely the surface holds its transfer: coarser meshes are read at the vertices of the finest.
+
+use super::deviation::{Deviation, Spread, Truth};
+use super::report::{Knob, Run};
+use coeff_io::{Mesh, Prt, Transfer};
+use glam::Vec3;
+
+/// Most cells along an edge of the grid that finds triangles.
+const MOST_CELLS: usize = 48;
+
+/// The runs of different meshes, compared with the finest of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resolution {
+    /// The runs; the last one is the finest.
+    pub runs: Vec<Run>,
+    /// Longest edge of each run's triangles, metres.
+    pub edges: Vec<f64>,
+}
+
+/// Longest edge of the triangles of a scene, metres.
+pub(super) fn longest_edge(scene: &scene::Scene) -> f64 {
+    let length = |mesh: &scene::Mesh, [a, b, c]: [u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|v| mesh.positions[v as usize]);
+        a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
+    };
+    let square = scene.meshes.iter().flat_map(|mesh| mesh.triangles.iter().map(move |&t| length(mesh, t)));
+    f64::from(square.fold(0.0, f32::max)).sqrt()
+}
+
+/// Vertices of a scene.
+pub(super) fn vertices(scene: &scene::Scene) -> usize {
+    scene.meshes.iter().map(|mesh| mesh.positions.len()).sum()
+}
+
+/// The deviation of a coarser bake of the same surface from the finest, at the finest one's vertices.
+///
+/// `None` where the two have no meshes in common.
+pub(super) fn deviation(coarse: &Prt, truth: &Truth, fine: &Prt) -> Option<Deviation> {
+    Some(truth.deviation(&read_at(coarse, fine)?))
+}
+
+/// The transfer of `coarse`, interpolated at the vertices of `fine`, mesh by mesh.
+fn read_at(coarse: &Prt, fine: &Prt) -> Option<Transfer> {
+    if coarse.meshes.len() != fine.meshes.len() {
+        return None;
+    }
+    let row = (coarse.transfer.bands * coarse.transfer.bands * coarse.transfer.channels) as usize;
+    let mut values = vec![0.0; fine.geometry.positions.len() * row];
+    for (from, to) in coarse.meshes.iter().zip(&fine.meshes) {
+        let Some(surface) = Surface::new(coarse, from) else { continue };
+        for vertex in to.first_vertex..to.first_vertex + to.vertices {
+            let (corners, weights) = surface.nearest(Vec3::from(fine.geometry.positions[vertex as usize]));
+            let out = &mut values[vertex as usize * row..][..row];
+            for (corner, weight) in corners.into_iter().zip(weights) {
+                let of = &coarse.transfer.values[corner as usize * row..][..row];
+                out.iter_mut().zip(of).for_each(|(out, v)| *out += weight * v);
+            }
+        }
+    }
+    let albedo = fine.transfer.albedo.clone();
+    Some(Transfer { values, albedo, openness: Vec::new(), ..coarse.transfer })
+}
+
+/// The triangles of a mesh in a grid, to find the one that a point lies on.
+struct Surface<'a> {
+    positions: &'a [[f32; 3]],
+    triangles: &'a [[u32; 3]],
+    low: Vec3,
+    cell: f32,
+    cells: [usize; 3],
+    /// Triangles that touch each cell.
+    lists: Vec<Vec<u32>>,
+}
+
+impl<'a> Surface<'a> {
+    fn new(prt: &'a Prt, mesh: &Mesh) -> Option<Self> {
+        let triangles = &prt.geometry.triangles[mesh.first_triangle as usize..][..mesh.triangles as usize];
+        let positions = &prt.geometry.positions[..];
+        let corners = || triangles.iter().flatten().map(|&v| Vec3::from(positions[v as usize]));
+        let low = corners().reduce(Vec3::min)?;
+        let size = corners().reduce(Vec3::max)? - low;
+        let along = ((2.0 * (triangles.len() as f32).sqrt()) as usize).clamp(1, MOST_CELLS);
+        let cell = (size.max_element() / along as f32).max(f32::MIN_POSITIVE);
+        let cells = size.to_array().map(|s| (s / cell) as usize + 1);
+        let lists = vec![Vec::new(); cells.iter().product()];
+        let mut surface = Self { positions, triangles, low, cell, cells, lists };
+        for (index, triangle) in triangles.iter().enumerate() {
+            let [a, b, c] = triangle.map(|v| Vec3::from(positions[v as usize]));
+            // A point on the surface may lie beside it by a rounding.
+            let pad = Vec3::splat(1e-3 * cell);
+            let (first, last) = (surface.at(a.min(b).min(c) - pad), surface.at(a.max(b).max(c) + pad));
+            for z in first[2]..=last[2] {
+                for y in first[1]..=last[1] {
+                    for x in first[0]..=last[0] {
+                        surface.lists[(z * cells[1] + y) * cells[0] + x].push(index as u32);
+                    }
+                }
+            }
+        }
+        Some(surface)
+    }
+
+    /// The cell of a point, or the one nearest to it.
+    fn at(&self, point: Vec3) -> [usize; 3] {
+        let place = ((point - self.low) / self.cell).to_array();
+        std::array::from_fn(|i| (place[i].max(0.0) as usize).min(self.cells[i] - 1))
+    }
+
+    /// Corners and weights of the point of the surface nearest to `point`, which lies on it but for rounding.
+    fn nearest(&self, point: Vec3) -> ([u32; 3], [f32; 3]) {
+        let [x, y, z] = self.at(point);
+        let list = &self.lists[(z * self.cells[1] + y) * self.cells[0] + x];
+        let all: Vec<u32>;
+        // A point away from the surface, as where meshes changed, is looked for everywhere.
+        let candidates = if list.is_empty() {
+            all = (0..self.triangles.len() as u32).collect();
+            &all
+        } else {
+            list
+        };
+        let mut best = (f32::INFINITY, ([0; 3], [0.0; 3]));
+        for &index in candidates {
+            let corners = self.triangles[index as usize];
+            let weights = nearest_weights(point, corners.map(|v| Vec3::from(self.positions[v as usize])));
+            let there: Vec3 =
+                corners.iter().zip(weights).map(|(&v, w)| w * Vec3::from(self.positions[v as usize])).sum();
+            let distance = there.distance_squared(point);
+            if distance < best.0 {
+                best = (distance, (corners, weights));
+            }
+        }
+        best.1
+    }
+}
+
+/// Barycentric weights of the point of a triangle that is nearest to `point`, or one near it where it lies outside:
+/// weights below 0 are cut and the rest scaled to 1.
+fn nearest_weights(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
+    let (ab, ac, ap) = (b - a, c - a, point - a);
+    let normal = ab.cross(ac);
+    let square = normal.length_squared();
+    if square <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let v = ap.cross(ac).dot(normal) / square;
+    let w = ab.cross(ap).dot(normal) / square;
+    let cut = [1.0 - v - w, v, w].map(|x| x.max(0.0));
+    let sum: f32 = cut.iter().sum();
+    cut.map(|x| x / sum)
+}
+
+/// A run of another mesh, without errors in bands that it does not have.
+pub(super) fn as_run(setting: String, mut run: Run, deviation: Option<&Deviation>) -> Run {
+    run.knob = Knob::Resolution;
+    run.setting = setting;
+    run.radiance_all_bands = None;
+    run.transfer = deviation.map_or_else(Spread::default, |d| Spread::of(&d.receivers));
+    run.radiance = deviation.map_or(0.0, |d| d.radiance);
+    run
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use coeff_io::Geometry;
+
+    /// A square of n x n cells in the plane z = x / 2, its transfer in one band a function of the place.
+    fn square(n: u32, value: impl Fn(f32, f32) -> f32) -> Prt {
+        let (mut geometry, mut transfer) =
+            (Geometry::default(), Transfer { bands: 1, channels: 1, ..Transfer::default() });
+        for i in 0..=n {
+            for j in 0..=n {
+                let (x, y) = (i as f32 / n as f32, j as f32 / n as f32);
+                geometry.positions.push([x, y, 0.5 * x]);
+                transfer.values.push(value(x, y));
+                transfer.albedo.push([1.0; 3]);
+                if i < n && j < n {
+                    let at = |i: u32, j: u32| i * (n + 1) + j;
+                    geometry.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                    geometry.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+        let mesh = Mesh {
+            name: "square".into(),
+            material: 0,
+            first_vertex: 0,
+            vertices: geometry.positions.len() as u32,
+            first_triangle: 0,
+            triangles: geometry.triangles.len() as u32,
+        };
+        Prt { geometry, transfer, meshes: vec![mesh], ..crate::cost::sample::prt() }
+    }
+
+    fn worst(value: impl Fn(f32, f32) -> f32) -> f32 {
+        let read = read_at(&square(4, &value), &square(15, &value)).unwrap();
+        let fine = square(15, &value);
+        read.values.iter().zip(&fine.transfer.values).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    }
+
+    /// Interpolation over triangles reproduces what is linear; 1e-5 is some roundings of values up to 3.
+    #[test]
+    fn what_is_linear_is_read_exactly() {
+        let off = worst(|x, y| 1.0 + 2.0 * x - 3.0 * y);
+        assert!(off < 1e-5, "{off}");
+    }
+
+    /// A step within the cells of the coarse square is not.
+    #[test]
+    fn what_is_linear_is_read_exactly_can_fail() {
+        assert!(worst(|x, _| if x > 0.4 { 1.0 } else { 0.0 }) > 0.1);
+    }
+
+    #[test]
+    fn other_meshes_are_not_compared() {
+        let mut other = square(4, |_, _| 0.0);
+        other.meshes.clear();
+        assert!(read_at(&square(4, |_, _| 0.0), &other).is_none());
+    }
+}
