@@ -2,6 +2,7 @@
 
 use super::{Basis, quadrature};
 use crate::{Bands, Rgb, evaluate_f64};
+use glam::DVec3;
 
 /// Spherical harmonics coefficients per channel that a conversion reads: 3 bands.
 const SH_COUNT: usize = 9;
@@ -46,31 +47,52 @@ impl Basis {
     }
 
     /// The matrix that takes 9 spherical harmonics coefficients of a signal to the coefficients with the least square
-    /// error over the hemisphere, `G^-1 P` with `P_ij` the integral of function `i` times harmonic `j`.
+    /// error over the hemisphere: [`Basis::fit`] of each harmonic.
     ///
-    /// The modified H-basis of one function is the cut one of four: exact at the surface's own normal, not the least error.
     /// Costs some tens of microseconds; keep it.
     #[must_use]
     pub fn conversion(self) -> Conversion {
-        let fitted = self.fitted();
         let bands = Bands::new(3).expect("3 bands exist");
+        let harmonics = |direction| {
+            let mut values = [0.0; SH_COUNT];
+            evaluate_f64(bands, direction, &mut values);
+            values
+        };
+        Conversion { basis: self, rows: self.fit(harmonics) }
+    }
+
+    /// Coefficients (one row per function) with the least square error over the hemisphere for N signals at once:
+    /// `G^-1 p` with `p_i` the integral of function `i` times the signal, by [`quadrature`].
+    ///
+    /// Signals must be smooth: polynomials of degree 4 are exact. The modified H-basis of one function is the cut one of
+    /// four: exact at the surface's own normal, not the least error.
+    pub fn fit<const N: usize>(self, signals: impl Fn(DVec3) -> [f64; N]) -> Vec<[f64; N]> {
+        self.least_squares(
+            quadrature().into_iter().map(|(normal, weight)| (normal, signals(normal).map(|s| weight * s))),
+        )
+    }
+
+    /// Least-squares coefficients from samples `(normal, value * solid angle)`; what is not fitted is cut off.
+    pub(super) fn least_squares<const N: usize>(
+        self,
+        samples: impl IntoIterator<Item = (DVec3, [f64; N])>,
+    ) -> Vec<[f64; N]> {
+        let fitted = self.fitted();
         let mut values = [0.0; Self::MAX_COUNT];
-        let mut harmonics = [0.0; SH_COUNT];
-        let mut rows = vec![[0.0; SH_COUNT]; fitted.count()];
-        for (direction, weight) in quadrature() {
-            fitted.evaluate_f64(direction, &mut values);
-            evaluate_f64(bands, direction, &mut harmonics);
-            for (row, value) in rows.iter_mut().zip(values) {
-                row.iter_mut().zip(harmonics).for_each(|(sum, harmonic)| *sum += weight * value * harmonic);
+        let mut sums = vec![[0.0; N]; fitted.count()];
+        for (normal, weighted) in samples {
+            fitted.evaluate_f64(normal, &mut values);
+            for (sum, value) in sums.iter_mut().zip(values) {
+                sum.iter_mut().zip(weighted).for_each(|(entry, weighted)| *entry += weighted * value);
             }
         }
-        fitted.solve(&mut rows);
-        rows.truncate(self.count());
-        Conversion { basis: self, rows }
+        fitted.solve(&mut sums);
+        sums.truncate(self.count());
+        sums
     }
 
     /// The basis that least squares are done in before coefficients are cut off.
-    pub(super) const fn fitted(self) -> Self {
+    const fn fitted(self) -> Self {
         match self {
             Self::ModifiedH1 => Self::ModifiedH4,
             _ => self,
@@ -78,7 +100,7 @@ impl Basis {
     }
 
     /// Turns inner products with the functions (one row each) into least-squares coefficients, by Cholesky's factors.
-    pub(super) fn solve<const N: usize>(self, rows: &mut [[f64; N]]) {
+    fn solve<const N: usize>(self, rows: &mut [[f64; N]]) {
         if self.is_orthonormal() {
             return;
         }

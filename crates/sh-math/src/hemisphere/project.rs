@@ -11,18 +11,8 @@ impl Basis {
     /// N normals spread evenly over the hemisphere have the solid angle `2 pi / N`. Sums are in f64, in the order of the
     /// samples.
     pub fn project_irradiance(self, samples: impl IntoIterator<Item = (DVec3, [f64; 3])>) -> Vec<[f32; 3]> {
-        let fitted = self.fitted();
-        let mut values = [0.0; Self::MAX_COUNT];
-        let mut sums = vec![[0.0; 3]; fitted.count()];
-        for (normal, weighted) in samples {
-            fitted.evaluate_f64(normal, &mut values);
-            for (sum, value) in sums.iter_mut().zip(values) {
-                sum.iter_mut().zip(weighted).for_each(|(channel, weighted)| *channel += weighted * value);
-            }
-        }
-        fitted.solve(&mut sums);
-        sums.truncate(self.count());
-        sums.into_iter().map(|row| row.map(|channel| channel as f32)).collect()
+        let rows = self.least_squares(samples);
+        rows.into_iter().map(|row| row.map(|channel| channel as f32)).collect()
     }
 
     /// Coefficients (`[function][channel]`) of irradiance / pi over normals, from samples of the radiance that arrives:
