@@ -1,1 +1,3 @@
 //! Accuracy against time, measured by calling the public crates as any user would: sweeps over settings, Pareto fronts, tables and plots.
+
+pub mod bases;
