@@ -1,6 +1,6 @@
 //! What may be typed: the commands and the options that all of them take.
 
-use crate::{bake, export, inspect, light, plan, reference, render};
+use crate::{bake, bases, export, inspect, light, plan, reference, render};
 
 /// Bakes how a scene answers to light, and relights it under any light probe.
 #[derive(Debug, clap::Parser)]
@@ -43,6 +43,9 @@ pub(crate) enum Command {
     /// Write the spherical harmonics coefficients of a light probe.
     #[command(after_help = light::EXAMPLES)]
     Light(light::Options),
+    /// Compare the bases of irradiance normal mapping: error, time, bytes.
+    #[command(after_help = bases::EXAMPLES)]
+    Bases(bases::Options),
     /// Name the built-in scenes and light probes.
     List,
 }

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod bake;
+mod bases;
 mod console;
 mod draw;
 mod export;
@@ -51,6 +52,7 @@ fn run(arguments: &Arguments, console: &Console) -> anyhow::Result<()> {
         Command::Inspect(options) => inspect::run(options, console),
         Command::Export(options) => export::run(options, console),
         Command::Light(options) => light::run(options, console),
+        Command::Bases(options) => bases::run(options, console),
         Command::List => list::run(console),
     }
 }
