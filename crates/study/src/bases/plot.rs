@@ -2,7 +2,6 @@
 
 use super::{Fit, Row, Study, font, label};
 use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use sh_math::hemisphere::Basis;
 use std::ops::Range;
@@ -13,6 +12,10 @@ const SIZE: (u32, u32) = (1200, 620);
 const ERRORS: Range<f64> = 0.001..1.0;
 /// Pixels of the letters of names and numbers.
 const SMALL: i32 = 13;
+
+/// What the marks mean.
+const LEGEND: &str =
+    "line: what no other basis beats in both; hollow: SH 4 cut from the sphere, SH 9 with signals of 5 bands";
 
 /// A drawn picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,6 +62,7 @@ impl Study {
         root.fill(&WHITE).map_err(fault)?;
         let title = "Irradiance normal mapping: error of each basis against its cost";
         let below = root.titled(title, (font::FAMILY, 20)).map_err(fault)?;
+        let below = below.titled(LEGEND, (font::FAMILY, SMALL)).map_err(fault)?;
         let (left, right) = below.split_horizontally(SIZE.0 / 2);
         let rows = self.shown();
         let slowest = rows.iter().map(|row| row.nanoseconds).fold(0.0, f64::max);
@@ -104,11 +108,12 @@ impl Panel {
             .axis_desc_style((font::FAMILY, SMALL + 1))
             .light_line_style(RGBColor(238, 238, 238))
             .bold_line_style(RGBColor(216, 216, 216))
+            .x_label_formatter(&|cost| format!("{cost}"))
             .y_label_formatter(&|error| format!("{error}"))
             .draw()
             .map_err(fault)?;
         let front = front(rows, &cost);
-        let line = LineSeries::new(front, RGBColor(150, 150, 150).stroke_width(2));
+        let line = LineSeries::new(front.iter().copied(), RGBColor(150, 150, 150).stroke_width(2));
         chart.draw_series(line).map_err(fault)?;
         for row in rows {
             let (point, colour) = ((cost(row), row.imse.mean), colour(row.entry.basis));
@@ -116,7 +121,9 @@ impl Panel {
             chart.draw_series([Circle::new(point, 5, style)]).map_err(fault)?;
         }
         let points: Vec<(i32, i32)> = rows.iter().map(|row| chart.backend_coord(&(cost(row), row.imse.mean))).collect();
-        name(root, chart.plotting_area(), rows, &points)
+        let line: Vec<(i32, i32)> = front.iter().map(|point| chart.backend_coord(point)).collect();
+        let (x, y) = chart.plotting_area().get_pixel_range();
+        name(root, rows, &points, &line, [x.start, y.start, x.end, y.end])
     }
 }
 
@@ -145,9 +152,10 @@ fn front(rows: &[Row], cost: impl Fn(&Row) -> f64) -> Vec<(f64, f64)> {
 /// Writes the names beside the points; rows at one point share a label.
 fn name<B: DrawingBackend>(
     root: &DrawingArea<B, Shift>,
-    plot: &DrawingArea<B, Cartesian2d<RangedCoordf64, LogCoord<f64>>>,
     rows: &[Row],
     points: &[(i32, i32)],
+    line: &[(i32, i32)],
+    frame: label::Area,
 ) -> Result<(), PlotError> {
     let mut groups: Vec<((i32, i32), String, RGBColor)> = Vec::new();
     for (row, point) in rows.iter().zip(points) {
@@ -161,8 +169,7 @@ fn name<B: DrawingBackend>(
         |text: &str| root.estimate_text_size(text, &style).map(|(width, height)| (width as i32, height as i32));
     let sizes: Vec<(i32, i32)> = groups.iter().map(|g| measure(&g.1)).collect::<Result<_, _>>().map_err(fault)?;
     let places: Vec<(i32, i32)> = groups.iter().map(|g| g.0).collect();
-    let (x, y) = plot.get_pixel_range();
-    let corners = label::place(&places, &sizes, [x.start, y.start, x.end, y.end]);
+    let corners = label::place(&places, &sizes, line, frame);
     for ((_, text, colour), corner) in groups.iter().zip(corners) {
         root.draw_text(text, &style.color(colour), corner).map_err(fault)?;
     }
@@ -185,6 +192,3 @@ fn colour(basis: Basis) -> RGBColor {
 fn fault<E: std::fmt::Display>(error: E) -> PlotError {
     PlotError(error.to_string())
 }
-
-/// The coordinate of errors.
-type LogCoord<T> = plotters::coord::combinators::LogCoord<T>;
