@@ -1,6 +1,6 @@
 //! What may be typed: the commands and the options that all of them take.
 
-use crate::{bake, cost, export, inspect, light, plan, reference, render};
+use crate::{bake, bases, cost, export, inspect, light, plan, reference, render};
 
 /// Bakes how a scene answers to light, and relights it under any light probe.
 #[derive(Debug, clap::Parser)]
@@ -46,6 +46,9 @@ pub(crate) enum Command {
     /// Measure what accuracy costs on a scene, and recommend settings.
     #[command(after_help = cost::EXAMPLES)]
     Cost(cost::Options),
+    /// Compare the bases of irradiance normal mapping: error, time, bytes.
+    #[command(after_help = bases::EXAMPLES)]
+    Bases(bases::Options),
     /// Name the built-in scenes and light probes.
     List,
 }

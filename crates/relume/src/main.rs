@@ -2,6 +2,7 @@
 
 mod arguments;
 mod bake;
+mod bases;
 mod columns;
 mod console;
 mod cost;
@@ -56,6 +57,7 @@ fn run(arguments: &Arguments, console: &Console) -> anyhow::Result<()> {
         Command::Export(options) => export::run(options, console),
         Command::Cost(options) => cost::run(options, console),
         Command::Light(options) => light::run(options, console),
+        Command::Bases(options) => bases::run(options, console),
         Command::List => list::run(console),
     }
 }

@@ -1,4 +1,4 @@
-//! Real spherical harmonics: evaluation, projection, rotation, windows.
+//! Real spherical harmonics: evaluation, projection, rotation, windows; and the bases of the hemisphere.
 //!
 //! This crate is the only place that knows the sign, the index and the normalisation of a basis function:
 //!
@@ -16,6 +16,7 @@ mod batch;
 mod double_double;
 mod euler;
 mod evaluate;
+pub mod hemisphere;
 mod legendre;
 mod light;
 mod project;

@@ -1,9 +1,9 @@
 //! The numbers that the evaluators run on: f32, f64, and blocks of directions side by side.
 
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 /// `f32` or `f64`.
-pub trait Real: Value + Default + sealed::Sealed {
+pub trait Real: Root + Default + sealed::Sealed {
     /// The nearest number of this type.
     fn from_f64(value: f64) -> Self;
     /// The same number in f64.
@@ -14,6 +14,14 @@ pub trait Real: Value + Default + sealed::Sealed {
 pub trait Value: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// A constant, rounded once.
     fn of(value: f64) -> Self;
+}
+
+/// A [`Value`] that can be divided and has square roots, both exactly rounded: what the hemispherical bases need beside.
+pub trait Root: Value + Div<Output = Self> {
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// The larger of the number and 0.
+    fn at_least_zero(self) -> Self;
 }
 
 mod sealed {
@@ -47,10 +55,34 @@ impl Real for f64 {
     }
 }
 
+impl Root for f32 {
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn at_least_zero(self) -> Self {
+        self.max(0.0)
+    }
+}
+
 impl Value for f32 {
     #[inline(always)]
     fn of(value: f64) -> Self {
         value as Self
+    }
+}
+
+impl Root for f64 {
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn at_least_zero(self) -> Self {
+        self.max(0.0)
     }
 }
 

@@ -1,4 +1,5 @@
 //! Accuracy against time, measured by calling the public crates as any user would: sweeps over settings, Pareto fronts, tables and plots.
 
+pub mod bases;
 pub mod cost;
 pub mod plot;

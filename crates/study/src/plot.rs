@@ -1,7 +1,7 @@
 //! Plots of accuracy against price, as SVG text and as pixels.
 
 pub mod chart;
-mod font;
+pub(crate) mod font;
 pub mod pixels;
 
 /// Why a plot or a picture could not be made.

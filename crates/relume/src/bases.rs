@@ -1,0 +1,57 @@
+//! `relume bases`: what each basis of irradiance normal mapping loses, and what it costs.
+
+use crate::console::Console;
+use anyhow::{Context, Result};
+use coeff_io::replace;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use study::bases::{Picture, SIGNALS, Settings};
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  relume bases -o bases/
+  relume bases --signals 1000000 --seed 7 -o bases/
+
+Prints the table and writes bases.csv, bases.svg and bases.png. Errors depend on the seed alone; the nanoseconds are
+measured on this machine: let it rest meanwhile.";
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// Random irradiance signals to average over.
+    #[arg(long, value_name = "N", default_value_t = SIGNALS, value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+    signals: u32,
+    /// Seed of the signals.
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+    /// The folder to write into; made if need be.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+}
+
+pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
+    let folder = &options.output;
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make the folder {}: choose another, or make room for it", folder.display()))?;
+    let study = study::bases::study(Settings { signals: options.signals, seed: options.seed });
+    let (svg, picture) = (study.svg()?, study.picture()?);
+    write(&folder.join("bases.csv"), |file| file.write_all(study.csv().as_bytes()))?;
+    write(&folder.join("bases.svg"), |file| file.write_all(svg.as_bytes()))?;
+    write(&folder.join("bases.png"), |file| png(&picture, file))?;
+    console.print(&study.text())?;
+    console.notice(&format!("wrote bases.csv, bases.svg and bases.png into {}", folder.display()));
+    Ok(())
+}
+
+fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
+    replace(path, fill).with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Plots are few colours: the slow compression makes them a fraction.
+fn png(picture: &Picture, file: &mut BufWriter<&File>) -> io::Result<()> {
+    let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::NoFilter);
+    let written = encoder.write_image(&picture.rgb, picture.width, picture.height, ExtendedColorType::Rgb8);
+    written.map_err(io::Error::other)
+}
