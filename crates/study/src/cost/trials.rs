@@ -36,7 +36,7 @@ pub(super) enum Turn {
 
 /// Bands of the reference.
 pub(super) fn reference_bands(bands: u32) -> u32 {
-    (bands + MORE_BANDS).max(REFERENCE_BANDS).min(bake::settings::MAX_BANDS)
+    (bands + MORE_BANDS).clamp(REFERENCE_BANDS, bake::settings::MAX_BANDS)
 }
 
 /// An error level near `error` with few digits, within what a bake allows.

@@ -278,7 +278,7 @@ fn apply(matrices: &[Vec<f64>], values: &mut [f64]) {
 /// Two rotations against their product, and the product's inverse back to the start.
 fn composition_error(rotate: impl Fn(u32, DQuat, &mut [f64])) -> f64 {
     let mut rng = Rng::new(5, 0);
-    let mut error = |n: u32| {
+    let error = |n: u32| {
         let (first, second) = (random_turn(&mut rng), random_turn(&mut rng));
         let start: Vec<f64> = (0..n * n).map(|_| rng.next_f64() - 0.5).collect();
         let start: Vec<f64> = start.iter().map(|v| v / length(&start)).collect();
@@ -290,5 +290,5 @@ fn composition_error(rotate: impl Fn(u32, DQuat, &mut [f64])) -> f64 {
         rotate(n, (second * first).inverse(), &mut once);
         composed.max(difference(&start, &once))
     };
-    worst((2..=10).map(|n| error(n)))
+    worst((2..=10).map(error))
 }
