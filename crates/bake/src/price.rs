@@ -87,6 +87,12 @@ fn try_out(
     if hits {
         let (seen, both) = gather(&gatherer);
         set_rays(&mut price.plan, Effect::Interreflection, rays(&seen, |g| g.bounce_rays) * scale);
+        // The hits refer to receivers at near points, which a bake would add.
+        let mut receivers = receivers.clone();
+        for (&id, one) in runs.iter().flatten().zip(seen.iter().flatten()) {
+            receivers.add_near(id, one.near.iter().map(|point| world.receiver_at(point)));
+        }
+        let receivers = &receivers;
         let chunks: Vec<Chunk> = runs.iter().zip(&seen).map(|(ids, seen)| Chunk::of(ids.clone(), seen)).collect();
         let last = Field::zeros(receivers.list.len(), bands.coefficients(), plan.channels as usize);
         let start = now();

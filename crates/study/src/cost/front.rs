@@ -52,12 +52,15 @@ mod tests {
     /// Taking the cheapest points, whatever their error, is seen to differ.
     #[test]
     fn the_front_is_that_of_the_definition_can_fail() {
-        let points = cloud(3, 40);
-        let truth = by_brute_force(&points);
-        let mut cheapest: Vec<usize> = (0..points.len()).collect();
-        cheapest.sort_by(|&a, &b| points[a][0].total_cmp(&points[b][0]));
-        cheapest.truncate(truth.len());
-        assert_ne!(sorted(cheapest), truth);
+        let differs = |seed: u64| {
+            let points = cloud(seed, seed % 40);
+            let truth = by_brute_force(&points);
+            let mut cheapest: Vec<usize> = (0..points.len()).collect();
+            cheapest.sort_by(|&a, &b| points[a][0].total_cmp(&points[b][0]));
+            cheapest.truncate(truth.len());
+            sorted(cheapest) != truth
+        };
+        assert!((0..200).any(differs));
     }
 
     #[test]

@@ -27,12 +27,23 @@ impl Pixels {
     /// # Errors
     /// [`Error`] where the number of pixels does not fit the size.
     pub fn png(&self) -> Result<Vec<u8>, Error> {
+        self.check("a PNG picture")?;
         let mut bytes = Vec::new();
         let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
         encoder
             .write_image(self.rgba.as_flattened(), self.width, self.height, ExtendedColorType::Rgba8)
             .map_err(|error| Error { what: "a PNG picture", reason: error.to_string() })?;
         Ok(bytes)
+    }
+
+    /// The encoders would panic where the number of pixels does not fit.
+    fn check(&self, what: &'static str) -> Result<(), Error> {
+        let expected = self.width as usize * self.height as usize;
+        if self.rgba.len() == expected {
+            return Ok(());
+        }
+        let (width, height, pixels) = (self.width, self.height, self.rgba.len());
+        Err(Error { what, reason: format!("{pixels} pixels are not {width} by {height}") })
     }
 
     /// The picture as the text of a `src` attribute: a PNG, which keeps every pixel and its coverage.
@@ -48,6 +59,7 @@ impl Pixels {
     /// # Errors
     /// As [`Pixels::png`].
     pub fn jpeg_uri(&self) -> Result<String, Error> {
+        self.check("a JPEG picture")?;
         let rgb: Vec<u8> = self.rgba.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
         let mut bytes = Vec::new();
         JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)

@@ -4,7 +4,7 @@ use super::Case;
 use super::baking::{askew, fixed, grey, placed, quiet, radiance, white};
 use super::case::{worse, worst};
 use super::published::{Start, open_share};
-use glam::{Vec3, Vec3Swizzles};
+use glam::Vec3;
 use raytrace::{Ray, Tracer, offset_origin};
 use sampling::frame::Frame;
 use sampling::rng::Rng;
@@ -77,8 +77,8 @@ pub(crate) fn thin_gap() -> Case {
 pub(crate) fn buried_receivers() -> Case {
     Case {
         title: "vertices of the ground inside a block",
-        bound: "how far they fall below the darkest vertex around the block, as a share: they take means of sound neighbours",
-        limit: 1e-5,
+        bound: "how far their open share falls below 1/2, which is free at the foot of any wall; 256 rays tell it to about 1/100",
+        limit: 0.01,
         ours: || {
             let prt = quiet(&block_on_ground(), &fixed(1, 256, 0));
             let shares: Vec<f64> = prt.transfer.openness.iter().map(|&s| f64::from(s)).collect();
@@ -143,11 +143,9 @@ fn block_on_ground() -> Scene {
     scene
 }
 
-/// How far the ground inside the block falls below the darkest vertex around it.
+/// How far the ground inside the block falls below the half of the sky that is free at the foot of a wall.
 fn shortfall(positions: &[[f32; 3]], shares: &[f64]) -> f64 {
-    let ground =
-        || positions.iter().zip(shares).filter(|(p, _)| p[1] == 0.0).map(|(p, share)| (Vec3::from(*p).xz(), share));
-    let reach = |p: glam::Vec2| p.abs().max_element();
-    let ring = ground().filter(|(p, _)| (0.45..0.55).contains(&reach(*p))).fold(1.0, |low, (_, &s)| f64::min(low, s));
-    worst(ground().filter(|(p, _)| reach(*p) < 0.35).map(|(_, share)| (1.0 - share / ring).max(0.0)))
+    let ground = positions.iter().zip(shares).filter(|(p, _)| p[1] == 0.0);
+    let inside = ground.filter(|(p, _)| p[0].abs().max(p[2].abs()) < 0.35);
+    worst(inside.map(|(_, share)| (0.5 - share).max(0.0)))
 }
