@@ -4,7 +4,8 @@ use crate::account::account;
 use crate::bundle::{Baked, bundle};
 use crate::directions::DirectionBank;
 use crate::field::Field;
-use crate::gather::{Gathered, Gatherer, NearPoint, PackedHit, Source};
+use crate::gather::{Gathered, Gatherer};
+use crate::hit::{NearPoint, PackedHit, Source};
 use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::{Progress, Stage};
@@ -166,7 +167,7 @@ impl<'a> Run<'a> {
     /// Whether what all receivers see may be kept in memory; otherwise each bounce finds it again.
     fn hits_fit(&self) -> bool {
         let fields = 3 * Field::bytes(self.receivers.list.len(), self.last.coefficients, self.last.channels);
-        let hits = self.plan.shadowed_receivers * self.assumed_hits() * size_of::<crate::gather::PackedHit>() as u64;
+        let hits = self.plan.shadowed_receivers * self.assumed_hits() * size_of::<crate::hit::PackedHit>() as u64;
         fields + hits <= self.settings.memory
     }
 

@@ -51,15 +51,11 @@ pub(crate) fn place(mesh: &Mesh, edge: Edge) -> Place {
 
 impl<'a> Bends<'a> {
     /// Looks from every vertex of a scene that lies on the surfaces of `world`.
-    pub(crate) fn new(
-        world: &'a World<'a>,
-        scene: &Scene,
-        asked: &Settings,
-        monitor: &Monitor<'_>,
-    ) -> Result<Self, Error> {
+    pub(crate) fn new(world: &'a World<'a>, scene: &Scene, monitor: &Monitor<'_>) -> Result<Self, Error> {
         let settings = Settings { bands: BANDS, quality: Quality::Rays(RAYS), ..settings::standard() };
         let bands = Bands::new(BANDS).expect("a constant in range");
-        let bank = DirectionBank::new(bands, &Settings { seed: asked.seed, ..settings });
+        // The same for any seed that a bake is asked for: seeds are compared receiver by receiver.
+        let bank = DirectionBank::new(bands, &settings);
         let mut bends =
             Self { world, bank, bands, vertices: Vec::new(), middles: vec![BTreeMap::new(); scene.meshes.len()] };
         for (index, mesh) in scene.meshes.iter().enumerate() {

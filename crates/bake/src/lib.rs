@@ -19,6 +19,7 @@ mod error;
 mod facts;
 mod field;
 mod gather;
+mod hit;
 mod material;
 mod passes;
 mod plan;

@@ -1,7 +1,8 @@
 //! Runs receivers over the threads: the first pass, and one pass per bounce.
 
 use crate::field::Field;
-use crate::gather::{Gathered, Gatherer, PackedHit, Source, Worker};
+use crate::gather::{Gathered, Gatherer, Worker};
+use crate::hit::{PackedHit, Source};
 use crate::progress::{Progress, Stage};
 use crate::receivers::{NONE, Receivers, morton_order};
 use crate::{Error, ProgressFn};

@@ -48,7 +48,7 @@ pub(crate) fn refine_watched<'a>(
                 return Ok(Cow::Borrowed(scene));
             }
             let longest = even_edge(scene);
-            at_bends(evenly(scene, longest)?, longest, &world, settings, &Monitor::new(progress))
+            at_bends(evenly(scene, longest)?, longest, &world, &Monitor::new(progress))
         }
     }
 }
@@ -97,10 +97,9 @@ fn at_bends<'a>(
     mut scene: Cow<'a, Scene>,
     longest: f32,
     world: &World<'_>,
-    settings: &Settings,
     monitor: &Monitor<'_>,
 ) -> Result<Cow<'a, Scene>, Error> {
-    let mut bends = Bends::new(world, &scene, settings, monitor)?;
+    let mut bends = Bends::new(world, &scene, monitor)?;
     for round in 0..BEND_ROUNDS {
         let shortest = longest * 0.5f32.powi(round + 1);
         let bent = bends.find(&scene, shortest, monitor)?;

@@ -1,7 +1,7 @@
 //! The scene as rays meet it: one list of triangles, and what a hit needs to know.
 
 use crate::Error;
-use crate::gather::NearPoint;
+use crate::hit::NearPoint;
 use crate::receivers::Receiver;
 use glam::Vec3;
 use raytrace::Tracer;

@@ -22,6 +22,7 @@ pub(crate) fn finish(scene: &mut Scene) {
         mend_normals(mesh, crease, &mut report);
         mend_coordinates(mesh, &mut report);
         let material = &scene.materials[mesh.material as usize];
+        mend_albedo(mesh, material.base_color.truncate(), &mut report);
         match material.normal_texture {
             Some(slot) => mend_tangents(mesh, slot.uv_set, &mut report),
             None => mesh.tangents.clear(),
@@ -85,6 +86,23 @@ fn mend_coordinates(mesh: &mut Mesh, report: &mut Report) {
     }
     if broken > 0 {
         let message = format!("{broken} texture coordinates or colours were not finite and were set to 0");
+        report.warnings.push(Warning { object: mesh.name.clone(), message });
+    }
+}
+
+/// Vertex colours that would reflect less than nothing or, with the material's factor, more than all are clamped.
+fn mend_albedo(mesh: &mut Mesh, factor: Vec3, report: &mut Report) {
+    let most = factor.max(Vec3::splat(f32::MIN_POSITIVE)).recip();
+    let mut clamped = 0;
+    for color in &mut mesh.colors {
+        let within = color.truncate().clamp(Vec3::ZERO, most);
+        if within != color.truncate() {
+            *color = within.extend(color.w);
+            clamped += 1;
+        }
+    }
+    if clamped > 0 {
+        let message = format!("{clamped} vertex colours make an albedo outside 0 to 1 and were clamped");
         report.warnings.push(Warning { object: mesh.name.clone(), message });
     }
 }

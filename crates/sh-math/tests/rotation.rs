@@ -3,6 +3,7 @@
 mod ivanic_ruedenberg;
 
 use glam::{DMat3, DQuat, DVec3, Quat};
+use ivanic_ruedenberg::Text;
 use sh_math::{Bands, Rgb, evaluate_f64, rotate::Rotation};
 use std::f64::consts::{FRAC_PI_2, PI};
 use testkit::quadrature::sphere_quadrature;
@@ -116,12 +117,21 @@ fn basis_turns_with_direction() {
 fn matrices_equal_another_recursion() {
     for turn in rotations() {
         let rotation = Rotation::from_f64(bands(21), turn);
-        let others = ivanic_ruedenberg::matrices(21, DMat3::from_quat(turn.normalize()));
+        let others = ivanic_ruedenberg::matrices(21, DMat3::from_quat(turn.normalize()), Text::Corrected);
         for (l, other) in others.iter().enumerate() {
             let error = distance(&rotation.matrix(l), other);
             assert!(error <= 2.0 * bound(l), "{turn}, degree {l}: {error:e}");
         }
     }
+}
+
+/// The recursion as printed, with `sqrt(1 - d)` in V for m < 0.
+#[test]
+fn another_recursion_as_printed_can_fail() {
+    let turn = Random(7).rotation();
+    let rotation = Rotation::from_f64(bands(3), turn);
+    let printed = ivanic_ruedenberg::matrices(3, DMat3::from_quat(turn), Text::Printed);
+    assert!(distance(&rotation.matrix(2), &printed[2]) > 0.1, "the missing term must be seen");
 }
 
 #[test]

@@ -60,8 +60,12 @@ impl Pictures<'_> {
             warn(self.report, &name, "a transmission texture is not supported; the factor alone is used");
         }
         let cutoff = json.alpha_cutoff.map_or(0.5, |c| c.0);
+        let base_color = Vec4::from(pbr.base_color_factor.0);
+        if base_color != base_color.clamp(Vec4::ZERO, Vec4::ONE) {
+            warn(self.report, &name, format!("base colour {base_color} is outside 0 to 1 and was clamped"));
+        }
         Material {
-            base_color: Vec4::from(pbr.base_color_factor.0).clamp(Vec4::ZERO, Vec4::ONE),
+            base_color: base_color.clamp(Vec4::ZERO, Vec4::ONE),
             base_color_texture: pbr.base_color_texture.as_ref().map(|info| self.slot(info)),
             metallic: if unlit { 0.0 } else { pbr.metallic_factor.0.clamp(0.0, 1.0) },
             roughness: if unlit { 1.0 } else { pbr.roughness_factor.0.clamp(0.0, 1.0) },

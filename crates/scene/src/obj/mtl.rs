@@ -133,7 +133,11 @@ impl Pictures<'_> {
         let other = |key: &str| source.unknown_param.get(key);
         let (color_map, coverage_map) = (map(&source.diffuse_texture), map(&source.dissolve_texture));
         let unsaid = if color_map.is_empty() { DEFAULT_DIFFUSE } else { 1.0 };
-        let diffuse = source.diffuse.map_or(Vec3::splat(unsaid), Vec3::from).clamp(Vec3::ZERO, Vec3::ONE);
+        let stated = source.diffuse.map_or(Vec3::splat(unsaid), Vec3::from);
+        let diffuse = stated.clamp(Vec3::ZERO, Vec3::ONE);
+        if diffuse != stated {
+            self.warn(&source.name, &format!("diffuse colour {stated} is outside 0 to 1 and was clamped"));
+        }
         let opacity = source.dissolve.or_else(|| other("Tr").and_then(|t| Some(1.0 - t.parse::<f32>().ok()?)));
         let opacity = opacity.unwrap_or(1.0).clamp(0.0, 1.0);
         if source.normal_texture.is_some() {

@@ -1,0 +1,92 @@
+//! What blocks a receiver's view, as the bounces take it.
+
+use crate::world::World;
+use glam::Vec3;
+use raytrace::Hit;
+
+/// A point of a surface that a receiver sees from nearer than the vertices of that surface are apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NearPoint {
+    /// Traced triangle.
+    pub(crate) triangle: u32,
+    /// Side that is seen.
+    pub(crate) front: bool,
+    /// Barycentrics of the second and third corner.
+    pub(crate) barycentrics: [f32; 2],
+}
+
+/// A point that a receiver sees, with its share of the receiver's cosine-weighted hemisphere.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PackedHit {
+    /// Traced triangle, or number among the receiver's near points; see the bits.
+    source: u32,
+    /// Barycentrics of the second and third corner, in units of 1/65535.
+    pub(crate) barycentrics: [u16; 2],
+    /// Weight times albedo, RGB.
+    pub(crate) reflected: [f32; 3],
+}
+
+impl PackedHit {
+    /// Whether the back of a triangle was hit.
+    pub(crate) fn is_back(&self) -> bool {
+        self.source & BACK != 0
+    }
+
+    /// What sends the light on.
+    pub(crate) fn source(&self) -> Source {
+        let number = self.source & !(BACK | NEAR);
+        if self.source & NEAR != 0 { Source::Near(number) } else { Source::Triangle(number) }
+    }
+}
+
+/// What sends light on to a receiver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// A traced triangle: interpolated from its vertices.
+    Triangle(u32),
+    /// A near point of the receiver.
+    Near(u32),
+}
+
+/// Bit of [`PackedHit::source`] for the back of a triangle.
+const BACK: u32 = 1 << 31;
+/// Bit of [`PackedHit::source`] for a near point.
+const NEAR: u32 = 1 << 30;
+
+/// A hit that refers to the near point on its side of its triangle where there is one.
+pub(crate) fn packed(hit: &Hit, reflected: Vec3, near: &[NearPoint]) -> PackedHit {
+    let side = if hit.front { 0 } else { BACK };
+    let found = near.binary_search_by_key(&(hit.triangle, hit.front), |point| (point.triangle, point.front));
+    PackedHit {
+        source: found.map_or(hit.triangle | side, |index| index as u32 | NEAR),
+        barycentrics: [quantised(hit.u), quantised(hit.v)],
+        reflected: reflected.to_array(),
+    }
+}
+
+/// The middles of what a receiver sees of each triangle that is nearer than it is large, where that sends on more than
+/// `worth` of the light, by triangle and side.
+///
+/// A surface that close lies in the shade of whatever the receiver stands on; its vertices, farther off, do not.
+pub(crate) fn near_points(world: &World<'_>, hits: &[(Hit, Vec3)], worth: f32) -> Vec<NearPoint> {
+    let mut near: Vec<&(Hit, Vec3)> = hits.iter().filter(|(hit, _)| hit.t < world.extent(hit.triangle)).collect();
+    near.sort_by_key(|(hit, _)| (hit.triangle, hit.front));
+    let groups = near.chunk_by(|(a, _), (b, _)| (a.triangle, a.front) == (b.triangle, b.front));
+    let middle = |group: &[&(Hit, Vec3)]| {
+        let share: f32 = group.iter().map(|(_, reflected)| reflected.max_element()).sum();
+        let mean = |of: fn(&Hit) -> f32| {
+            group.iter().map(|(hit, reflected)| of(hit) * reflected.max_element()).sum::<f32>() / share
+        };
+        let (u, v) = (mean(|hit| hit.u), mean(|hit| hit.v));
+        let away = |hit: &Hit| (hit.u - u).powi(2) + (hit.v - v).powi(2);
+        // A point that was hit: the mean itself may lie inside a body that pierces the triangle.
+        let (hit, _) = group.iter().min_by(|(a, _), (b, _)| away(a).total_cmp(&away(b)))?;
+        let barycentrics = [hit.u, hit.v];
+        (share > worth).then_some(NearPoint { triangle: hit.triangle, front: hit.front, barycentrics })
+    };
+    groups.filter_map(middle).collect()
+}
+
+fn quantised(x: f32) -> u16 {
+    (x.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+}
