@@ -11,7 +11,6 @@ mod frames;
 mod front;
 mod page;
 mod plots;
-pub mod predict;
 mod recommend;
 pub mod report;
 mod resolution;
@@ -22,6 +21,7 @@ mod trials;
 mod truth;
 mod views;
 
+pub use bakes::{Check, Effort};
 pub use csv::csv;
 pub use deviation::{Deviation, Spread, Truth, open_norm};
 pub use format::Format;

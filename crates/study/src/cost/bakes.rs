@@ -1,15 +1,18 @@
-//! Bakes with a clock: how long each part took, and how much time is left.
+//! Bakes with a clock, predicted before they start: the scene is split once, so that every bake has the same receivers.
 
 use super::{Error, ProgressFn, Step};
-use coeff_io::{Prt, Settings};
+use coeff_io::{Effect, Prt, Refine, Settings};
 use scene::Scene;
+use std::borrow::Cow;
 use std::ops::ControlFlow;
-use std::sync::Mutex;
 use std::time::Instant;
 
 /// Bakes one after the other, within a budget of time.
 pub(super) struct Bakes<'a> {
-    scene: &'a Scene,
+    /// Split as asked.
+    pub(super) scene: Cow<'a, Scene>,
+    /// Seconds that splitting took; each bake would take them anew.
+    split: f64,
     progress: ProgressFn<'a>,
     began: Instant,
     budget: f64,
@@ -20,36 +23,57 @@ pub(super) struct Bakes<'a> {
 #[derive(Debug)]
 pub(super) struct Timed {
     pub(super) prt: Prt,
-    /// Wall-clock seconds from the call to the result.
+    /// Wall-clock seconds of splitting and baking.
     pub(super) seconds: f64,
-    /// Of these: tracing, that is all stages but bounces.
-    pub(super) tracing: f64,
-    /// Of these: bounces.
-    pub(super) bouncing: f64,
 }
 
-/// When the stage now running began and what the others took.
-struct Stages {
-    since: Instant,
-    bounce: Option<bool>,
-    seconds: [f64; 2],
+/// What a bake takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// Rays of both kinds.
+    pub rays: f64,
 }
 
-impl Stages {
-    /// A report came: the time since the last one belongs to the stage that it tells of.
-    fn note(&mut self, is_bounce: bool) {
-        let now = Instant::now();
-        if self.bounce.is_some() {
-            self.seconds[usize::from(is_bounce)] += (now - self.since).as_secs_f64();
-        }
-        self.bounce = Some(is_bounce);
-        self.since = now;
+/// A bake as predicted and as it came.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// The bake.
+    pub name: String,
+    /// Before it started.
+    pub predicted: Effort,
+    /// After; `None` where the budget did not allow it.
+    pub came: Option<Effort>,
+}
+
+impl Timed {
+    /// What the bake took.
+    pub(super) fn effort(&self) -> Effort {
+        let achieved = &self.prt.achieved;
+        Effort { seconds: self.seconds, rays: (achieved.visibility_rays + achieved.bounce_rays) as f64 }
     }
 }
 
 impl<'a> Bakes<'a> {
-    pub(super) fn new(scene: &'a Scene, budget: f64, progress: ProgressFn<'a>) -> Self {
-        Self { scene, progress, began: Instant::now(), budget, count: 0 }
+    /// Splits the scene as the settings say.
+    pub(super) fn new(
+        scene: &'a Scene,
+        settings: &Settings,
+        budget: f64,
+        progress: ProgressFn<'a>,
+    ) -> Result<Self, Error> {
+        let began = Instant::now();
+        let scene = bake::refine(scene, settings)?;
+        Ok(Self { scene, split: began.elapsed().as_secs_f64(), progress, began, budget, count: 0 })
+    }
+
+    /// The same study with the same clock, on the scene split in another way.
+    pub(super) fn of_mesh<'b>(&self, scene: Scene, split: f64) -> Bakes<'b>
+    where
+        'a: 'b,
+    {
+        Bakes { scene: Cow::Owned(scene), split, ..*self }
     }
 
     /// Seconds since the study began.
@@ -62,32 +86,31 @@ impl<'a> Bakes<'a> {
         self.budget - self.spent()
     }
 
+    /// What a bake will take: a few hundred receivers, evenly drawn, are baked for trial.
+    pub(super) fn predict(&self, settings: &Settings) -> Result<Effort, Error> {
+        let began = Instant::now();
+        let price = bake::price(&self.scene, &as_split(settings), &|| began.elapsed())?;
+        let rays =
+            |effect: Effect| price.plan.rows.iter().filter(move |row| row.effect == effect).map(|row| row.rays as f64);
+        Ok(Effort {
+            seconds: self.split + price.preparation + price.visibility + price.interreflection,
+            rays: rays(Effect::Visibility).chain(rays(Effect::Interreflection)).sum(),
+        })
+    }
+
     /// Bakes with these settings; `name` tells the user what is being done.
-    ///
-    /// # Errors
-    /// [`Error`] as the bake has it, or where the user asked to stop.
     pub(super) fn bake(&mut self, name: &str, settings: &Settings) -> Result<Timed, Error> {
         self.count += 1;
         self.tell(name, 0, 1)?;
         let began = Instant::now();
-        let stages = Mutex::new(Stages { since: began, bounce: None, seconds: [0.0; 2] });
-        let progress = self.progress;
-        let run = self.count;
-        let prt = bake::bake(self.scene, settings, &|now| {
-            // A panic elsewhere is no reason for another one here.
-            let mut stages = stages.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            stages.note(matches!(now.stage, bake::Stage::Bounce(_)));
+        let (progress, run) = (self.progress, self.count);
+        let prt = bake::bake(&self.scene, &as_split(settings), &|now| {
             progress(&Step { name, run, stage: now.stage.to_string(), done: now.done, total: now.total })
         })?;
-        let seconds = began.elapsed().as_secs_f64();
-        let [tracing, bouncing] = stages.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).seconds;
-        Ok(Timed { prt, seconds, tracing, bouncing })
+        Ok(Timed { prt, seconds: self.split + began.elapsed().as_secs_f64() })
     }
 
     /// Tells of work that is no bake.
-    ///
-    /// # Errors
-    /// [`Error::Cancelled`] where the user asked to stop.
     pub(super) fn tell(&self, name: &str, done: u64, total: u64) -> Result<(), Error> {
         let step = Step { name, run: self.count, stage: String::new(), done, total };
         match (self.progress)(&step) {
@@ -95,4 +118,9 @@ impl<'a> Bakes<'a> {
             ControlFlow::Break(()) => Err(Error::Cancelled),
         }
     }
+}
+
+/// The settings for a scene that is split already.
+fn as_split(settings: &Settings) -> Settings {
+    Settings { refine: Refine::Off, ..settings.clone() }
 }

@@ -1,8 +1,8 @@
 //! What a study found, as plain data.
 
+use super::bakes::Check;
 use super::deviation::Spread;
 use super::frames::Frames;
-use super::predict::Check;
 use super::recommend::Advice;
 use super::resolution::Resolution;
 use crate::plot::pixels::Pixels;
@@ -167,7 +167,7 @@ pub struct Report {
     pub resolution: Option<Resolution>,
     /// Time per picture.
     pub frames: Vec<Frames>,
-    /// Predicted and measured bakes.
+    /// Predicted and measured bakes: half of the reference, then the trials.
     pub checks: Vec<Check>,
     /// Receivers with the largest errors in the run named.
     pub worst: Vec<WorstReceiver>,

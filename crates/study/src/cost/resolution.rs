@@ -1,9 +1,15 @@
 //! How finely the surface holds its transfer: coarser meshes are read at the vertices of the finest.
 
+use super::bakes::{Bakes, Timed};
 use super::deviation::{Deviation, Spread, Truth};
 use super::report::{Knob, Run};
-use coeff_io::{Mesh, Prt, Transfer};
+use super::study::run_of;
+use super::trials::as_asked;
+use super::{Error, Request};
+use coeff_io::{Mesh, Prt, Refine, Settings, Transfer};
 use glam::Vec3;
+use scene::Scene;
+use std::time::Instant;
 
 /// Most cells along an edge of the grid that finds triangles.
 const MOST_CELLS: usize = 48;
@@ -11,14 +17,133 @@ const MOST_CELLS: usize = 48;
 /// The runs of different meshes, compared with the finest of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resolution {
-    /// The runs; the last one is the finest.
+    /// The runs; the last one is the finest, and is made for comparison alone.
     pub runs: Vec<Run>,
     /// Longest edge of each run's triangles, metres.
     pub edges: Vec<f64>,
 }
 
+/// A way to split the scene.
+struct Split {
+    /// The option of a bake, or words where there is none.
+    words: String,
+    can_be_typed: bool,
+    scene: Scene,
+    /// Seconds that splitting took.
+    seconds: f64,
+    edge: f64,
+}
+
+/// Bakes the scene split in other ways, as far as the budget allows, and compares each with the finest.
+///
+/// The finest has the vertices of the mesh as asked and no edge above a quarter, or a half, of its longest.
+///
+/// # Errors
+/// As a bake.
+pub(super) fn study(
+    request: &Request<'_>,
+    truth: &Truth,
+    bakes: &Bakes<'_>,
+    left_out: &mut Vec<String>,
+) -> Result<Option<Resolution>, Error> {
+    bakes.tell("splitting", 0, 1)?;
+    let settings = as_asked(request).settings;
+    let edge = longest_edge(&bakes.scene);
+    let Some((finest, mut left)) = finest(request, bakes, edge, left_out)? else { return Ok(None) };
+    let asked = Split {
+        words: "--refine auto".into(),
+        can_be_typed: true,
+        scene: bakes.scene.clone().into_owned(),
+        seconds: 0.0,
+        edge,
+    };
+    let mut splits = vec![asked];
+    if vertices(request.scene) < vertices(&bakes.scene) {
+        splits.push(split(request, request.scene, Refine::Off, "--refine off".into())?);
+    }
+    for part in [1.0, 2.0] {
+        let even = two_digits(edge / part);
+        splits.push(split(request, request.scene, Refine::Edge(even as f32), format!("--refine {even}"))?);
+    }
+    let mut timed = Vec::new();
+    for split in splits {
+        let mut other = bakes.of_mesh(split.scene, split.seconds);
+        let needed = other.predict(&settings)?.seconds;
+        let name = format!("{} {}", as_asked(request).setting, split.words);
+        if needed > left {
+            left_out.push(format!("{name}: it would take about {needed:.1} s of the {:.1} s left", left.max(0.0)));
+            continue;
+        }
+        left -= needed;
+        timed.push((name.clone(), split.can_be_typed, split.edge, other.bake(&name, &settings)?));
+    }
+    let mut other = bakes.of_mesh(finest.scene, finest.seconds);
+    timed.push((finest.words.clone(), finest.can_be_typed, finest.edge, other.bake(&finest.words, &settings)?));
+    Ok((timed.len() > 1).then(|| compare(&timed, truth)))
+}
+
+/// The finest mesh that the budget allows, and the seconds that are left beside it; `None` where there is none.
+fn finest(
+    request: &Request<'_>,
+    bakes: &Bakes<'_>,
+    edge: f64,
+    left_out: &mut Vec<String>,
+) -> Result<Option<(Split, f64)>, Error> {
+    let settings = as_asked(request).settings;
+    let plan = bake::plan(&bakes.scene, &Settings { refine: Refine::Off, ..settings.clone() })?;
+    if plan.shadowed_receivers == 0 {
+        left_out.push("resolution: nothing casts a shadow, so finer vertices would hold nothing more".into());
+        return Ok(None);
+    }
+    let mut why = String::new();
+    for part in [4.0, 2.0] {
+        let longest = two_digits(edge / part);
+        let words = format!("for comparison: no edge above {longest} m");
+        let split = split(request, &bakes.scene, Refine::Edge(longest as f32), words)?;
+        let count = vertices(&split.scene);
+        let needed = bakes.predict(&settings)?.seconds * count as f64 / vertices(&bakes.scene).max(1) as f64;
+        let left = bakes.left() - needed;
+        // The mesh as asked must fit too, or there is nothing to compare.
+        if left > needed * vertices(&bakes.scene) as f64 / count as f64 {
+            return Ok(Some((split, left)));
+        }
+        why = format!(
+            "resolution: {count} receivers with edges of {longest} m would take about {needed:.1} s, with {:.1} s left",
+            bakes.left().max(0.0)
+        );
+    }
+    left_out.push(why);
+    Ok(None)
+}
+
+/// Splits a scene with a clock.
+fn split(request: &Request<'_>, scene: &Scene, refine: Refine, words: String) -> Result<Split, Error> {
+    let began = Instant::now();
+    let scene = bake::refine(scene, &Settings { refine, ..request.settings.clone() })?.into_owned();
+    let can_be_typed = words.starts_with("--");
+    Ok(Split { words, can_be_typed, seconds: began.elapsed().as_secs_f64(), edge: longest_edge(&scene), scene })
+}
+
+/// Compares every bake with the last.
+fn compare(timed: &[(String, bool, f64, Timed)], truth: &Truth) -> Resolution {
+    let finest = &timed[timed.len() - 1].3.prt;
+    let truth = Truth { transfer: finest.transfer.clone(), light: truth.light.clone() };
+    let run = |(name, can_be_typed, _, timed): &(String, bool, f64, Timed)| {
+        let deviation = read_at(&timed.prt, finest).map(|transfer| truth.deviation(&transfer));
+        let of = |of: &Deviation| (Spread::of(&of.receivers), of.radiance);
+        let (transfer, radiance) = deviation.as_ref().map_or((Spread::default(), 0.0), of);
+        Run { transfer, radiance, can_be_typed: *can_be_typed, ..run_of(Knob::Resolution, name.clone(), timed) }
+    };
+    Resolution { runs: timed.iter().map(run).collect(), edges: timed.iter().map(|t| t.2).collect() }
+}
+
+/// A length with two digits.
+fn two_digits(edge: f64) -> f64 {
+    format!("{edge:.1e}").parse().unwrap_or(edge)
+}
+
 /// Longest edge of the triangles of a scene, metres.
-pub(super) fn longest_edge(scene: &scene::Scene) -> f64 {
+fn longest_edge(scene: &Scene) -> f64 {
     let length = |mesh: &scene::Mesh, [a, b, c]: [u32; 3]| {
         let [a, b, c] = [a, b, c].map(|v| mesh.positions[v as usize]);
         a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
@@ -28,15 +153,8 @@ pub(super) fn longest_edge(scene: &scene::Scene) -> f64 {
 }
 
 /// Vertices of a scene.
-pub(super) fn vertices(scene: &scene::Scene) -> usize {
+fn vertices(scene: &Scene) -> usize {
     scene.meshes.iter().map(|mesh| mesh.positions.len()).sum()
-}
-
-/// The deviation of a coarser bake of the same surface from the finest, at the finest one's vertices.
-///
-/// `None` where the two have no meshes in common.
-pub(super) fn deviation(coarse: &Prt, truth: &Truth, fine: &Prt) -> Option<Deviation> {
-    Some(truth.deviation(&read_at(coarse, fine)?))
 }
 
 /// The transfer of `coarse`, interpolated at the vertices of `fine`, mesh by mesh.
@@ -147,16 +265,6 @@ fn nearest_weights(point: Vec3, [a, b, c]: [Vec3; 3]) -> [f32; 3] {
     let cut = [1.0 - v - w, v, w].map(|x| x.max(0.0));
     let sum: f32 = cut.iter().sum();
     cut.map(|x| x / sum)
-}
-
-/// A run of another mesh, without errors in bands that it does not have.
-pub(super) fn as_run(setting: String, mut run: Run, deviation: Option<&Deviation>) -> Run {
-    run.knob = Knob::Resolution;
-    run.setting = setting;
-    run.radiance_all_bands = None;
-    run.transfer = deviation.map_or_else(Spread::default, |d| Spread::of(&d.receivers));
-    run.radiance = deviation.map_or(0.0, |d| d.radiance);
-    run
 }
 
 #[cfg(test)]

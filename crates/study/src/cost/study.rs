@@ -1,37 +1,31 @@
-//! The study itself: short bakes, prediction, reference, sweep, and what follows from them.
+//! The study itself: reference, sweep, and what follows from them.
 
-use super::bakes::{Bakes, Timed};
+use super::bakes::{Bakes, Check, Timed};
 use super::deviation::{Deviation, Spread, Truth};
 use super::format::Format;
-use super::predict::{Check, Pilot, Predictor};
 use super::recommend::{Advice, Goal, advise};
 use super::report::{Knob, Report, Run, View, WorstReceiver};
 use super::resolution::{self, Resolution};
-use super::trials::{self, Turn, bake_of, level};
-use super::truth::{Reference, came, reference};
+use super::trials::{Trial, as_asked, trials};
+use super::truth::{Reference, reference};
 use super::{Error, ProgressFn, Request, frames, front, views};
-use coeff_io::{Prt, Quality, Refine, Settings, Transfer};
+use coeff_io::{Prt, Transfer};
 
-/// Rays of the first short bake.
-const FEW_RAYS: u32 = 64;
 /// Receivers in the list of the worst.
 const WORST: usize = 10;
 /// Maps on the page.
 const MAPS: usize = 3;
-/// Share of the budget below which no finer mesh is begun.
-const RESOLUTION_SHARE: f64 = 0.5;
 
 /// Bakes a scene again and again, one knob turned at a time, and compares what comes with a converged bake.
 ///
 /// # Errors
 /// [`Error`] where a bake or a picture fails, or `progress` asked to stop.
 pub fn study(request: &Request<'_>, progress: ProgressFn<'_>) -> Result<Report, Error> {
-    let mut bakes = Bakes::new(request.scene, request.budget, progress);
-    let mut sweep = Sweep { request, baked: Vec::new(), prt: None, left_out: Vec::new(), check: None };
-    let predictor = sweep.pilots(&mut bakes)?;
-    let reference = reference(request, &predictor, &mut bakes)?;
-    sweep.trials(&predictor, &mut bakes)?;
-    let resolution = sweep.resolution(&predictor, &reference.truth, &mut bakes)?;
+    let mut bakes = Bakes::new(request.scene, &request.settings, request.budget, progress)?;
+    let reference = reference(request, &mut bakes)?;
+    let mut sweep = Sweep { request, baked: Vec::new(), prt: None, left_out: Vec::new(), checks: Vec::new() };
+    sweep.trials(&mut bakes)?;
+    let resolution = resolution::study(request, &reference.truth, &bakes, &mut sweep.left_out)?;
     sweep.report(reference, resolution, &bakes)
 }
 
@@ -45,115 +39,49 @@ struct Baked {
 struct Sweep<'a> {
     request: &'a Request<'a>,
     baked: Vec<Baked>,
-    /// The bake as asked, or the last short one, and its index.
+    /// The bake as asked, or the first one where that did not fit, and its index.
     prt: Option<(usize, Prt)>,
     left_out: Vec<String>,
-    check: Option<Check>,
+    checks: Vec<Check>,
 }
 
 impl Sweep<'_> {
-    /// Three short bakes, from which the time of others is predicted.
-    fn pilots(&mut self, bakes: &mut Bakes<'_>) -> Result<Predictor, Error> {
-        let fine = level(4.0 * self.request.targets.error);
-        let mut pilot = |turn: Turn| {
-            let (knob, setting, settings) = bake_of(self.request, turn);
-            let timed = bakes.bake(&setting, &settings)?;
-            let pilot = Pilot::of(&timed);
-            self.keep(knob, setting, timed);
-            Ok::<_, Error>(pilot)
-        };
-        let [few, coarse] = [pilot(Turn::Rays(FEW_RAYS))?, pilot(Turn::Error(1.0))?];
-        let fine_pilot = pilot(Turn::Error(fine))?;
-        Ok(Predictor::new(few, coarse, fine_pilot, f64::from(fine)))
-    }
-
-    /// Every further bake that the budget allows.
-    fn trials(&mut self, predictor: &Predictor, bakes: &mut Bakes<'_>) -> Result<(), Error> {
-        for (index, trial) in trials::trials(self.request, predictor).into_iter().enumerate() {
-            // The first one is the bake as asked.
-            let name = format!("the bake as asked: {}", trial.setting);
-            if trial.estimate.seconds > bakes.left() {
-                let (needed, left) = (trial.estimate.seconds, bakes.left().max(0.0));
-                self.left_out
-                    .push(format!("{}: it would take about {needed:.1} s of the {left:.1} s left", trial.setting));
-                if index == 0 {
-                    self.check = Some(Check { name, predicted: trial.estimate, came: None });
-                }
+    /// The first trial, and every further one that the budget allows.
+    fn trials(&mut self, bakes: &mut Bakes<'_>) -> Result<(), Error> {
+        for trial in trials(self.request) {
+            // Where nothing is left nothing more is predicted.
+            if bakes.left() <= 0.0 && self.prt.is_some() {
+                self.left_out.push(format!("{}: no time was left", trial.setting));
                 continue;
             }
-            let timed = bakes.bake(&trial.setting, &trial.settings)?;
-            if index == 0 {
-                self.check = Some(Check { name, predicted: trial.estimate, came: Some(came(&timed)) });
+            bakes.tell("predicting", 0, 1)?;
+            let predicted = bakes.predict(&trial.settings)?;
+            let left = bakes.left().max(0.0);
+            let fits = predicted.seconds <= left || self.prt.is_none();
+            let mut came = None;
+            if fits {
+                let timed = bakes.bake(&trial.setting, &trial.settings)?;
+                came = Some(timed.effort());
+                self.keep(&trial, timed);
+            } else {
+                let needed = predicted.seconds;
+                self.left_out
+                    .push(format!("{}: it would take about {needed:.1} s of the {left:.1} s left", trial.setting));
             }
-            self.keep(trial.knob, trial.setting, timed);
+            self.checks.push(Check { name: trial.setting, predicted, came });
         }
         Ok(())
     }
 
-    fn keep(&mut self, knob: Knob, setting: String, timed: Timed) {
-        let as_asked = timed.prt.settings.quality == Quality::Error(self.request.targets.error) && knob == Knob::Error;
-        let run = run_of(knob, setting, &timed);
-        let transfer = if as_asked || self.baked.len() < 3 {
+    fn keep(&mut self, trial: &Trial, timed: Timed) {
+        let run = run_of(trial.knob, trial.setting.clone(), &timed);
+        let is_shown = self.prt.is_none() || trial.setting == as_asked(self.request).setting;
+        let transfer = if is_shown {
             self.prt.insert((self.baked.len(), timed.prt)).1.transfer.clone()
         } else {
             timed.prt.transfer
         };
         self.baked.push(Baked { run, transfer });
-    }
-
-    /// Bakes of coarser and finer meshes.
-    fn resolution(
-        &mut self,
-        predictor: &Predictor,
-        truth: &Truth,
-        bakes: &mut Bakes<'_>,
-    ) -> Result<Option<Resolution>, Error> {
-        let shadowed = self.prt.as_ref().is_some_and(|(_, prt)| prt.plan.shadowed_receivers > 0);
-        if !shadowed {
-            self.left_out.push("resolution: nothing casts a shadow, so finer vertices would hold nothing more".into());
-            return Ok(None);
-        }
-        let meshes = self.meshes(predictor, bakes)?;
-        if meshes.len() < 2 {
-            return Ok(None);
-        }
-        let error = self.request.targets.error;
-        let mut timed = Vec::new();
-        for (refine, words, _) in &meshes {
-            let settings =
-                Settings { refine: *refine, quality: Quality::Error(error), ..self.request.settings.clone() };
-            let setting = format!("{}--error {error} {words}", trials::prefix(&settings));
-            timed.push((setting.clone(), bakes.bake(&setting, &settings)?));
-        }
-        Ok(compare_meshes(&timed, meshes.iter().map(|m| m.2).collect(), truth))
-    }
-
-    /// Meshes from coarse to fine that the budget allows: how they are split, the option, the longest edge.
-    fn meshes(&mut self, predictor: &Predictor, bakes: &Bakes<'_>) -> Result<Vec<(Refine, String, f64)>, Error> {
-        let scene = self.request.scene;
-        let split = |refine: Refine| bake::refine(scene, &Settings { refine, ..self.request.settings.clone() });
-        let standard = split(self.request.settings.refine)?;
-        let (edge, count) = (resolution::longest_edge(&standard), resolution::vertices(&standard));
-        let base = predictor.level(f64::from(self.request.targets.error), self.request.settings.bands).seconds;
-        let mut left = bakes.left() - base;
-        let mut meshes = vec![(self.request.settings.refine, "--refine auto".to_owned(), edge)];
-        if resolution::vertices(scene) < count && base < left {
-            left -= base;
-            meshes.insert(0, (Refine::Off, "--refine off".into(), resolution::longest_edge(scene)));
-        }
-        for part in [2.0, 4.0] {
-            let finer = level_edge(edge / part);
-            let vertices = resolution::vertices(&*split(Refine::Edge(finer as f32))?);
-            let needed = base * vertices as f64 / count.max(1) as f64;
-            if needed > left || bakes.left() < RESOLUTION_SHARE * needed {
-                let why = format!("{vertices} receivers, about {needed:.1} s of the {:.1} s left", left.max(0.0));
-                self.left_out.push(format!("--refine {finer}: {why}"));
-                break;
-            }
-            left -= needed;
-            meshes.push((Refine::Edge(finer as f32), format!("--refine {finer}"), finer));
-        }
-        Ok(meshes)
     }
 
     /// Compares, times frames, draws, and writes the report.
@@ -186,7 +114,7 @@ impl Sweep<'_> {
             receivers: [prt.plan.receivers, prt.plan.shadowed_receivers],
             texture_bytes: prt.textures.iter().map(|t| 4 * t.rgba.len() as u64).sum(),
             worst: worst(&prt, &errors[shown]),
-            checks: [self.check, Some(reference.check)].into_iter().flatten().collect(),
+            checks: std::iter::once(reference.check).chain(self.checks).collect(),
             reference: reference.facts,
             runs,
             fast_front,
@@ -220,7 +148,7 @@ impl Sweep<'_> {
 }
 
 /// A run of a bake, not compared yet.
-fn run_of(knob: Knob, setting: String, timed: &Timed) -> Run {
+pub(super) fn run_of(knob: Knob, setting: String, timed: &Timed) -> Run {
     let (transfer, achieved) = (&timed.prt.transfer, &timed.prt.achieved);
     Run {
         knob,
@@ -246,22 +174,6 @@ fn compare(run: &mut Run, transfer: &Transfer, truth: &Truth) -> Vec<f32> {
     run.radiance = radiance;
     run.radiance_all_bands = Some(radiance_all_bands);
     receivers
-}
-
-/// Compares bakes of several meshes with the last, which is the finest.
-fn compare_meshes(timed: &[(String, Timed)], edges: Vec<f64>, truth: &Truth) -> Option<Resolution> {
-    let (_, finest) = timed.last()?;
-    let truth = Truth { transfer: finest.prt.transfer.clone(), light: truth.light.clone() };
-    let compared = |(setting, timed): &(String, Timed)| {
-        let deviation = resolution::deviation(&timed.prt, &truth, &finest.prt);
-        resolution::as_run(setting.clone(), run_of(Knob::Resolution, setting.clone(), timed), deviation.as_ref())
-    };
-    Some(Resolution { runs: timed.iter().map(compared).collect(), edges })
-}
-
-/// A length with two digits.
-fn level_edge(edge: f64) -> f64 {
-    format!("{edge:.1e}").parse().unwrap_or(edge)
 }
 
 /// The fronts of time and of bytes.

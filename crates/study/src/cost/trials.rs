@@ -1,13 +1,14 @@
 //! The list of bakes that a study would like to make, the most telling first.
 
 use super::Request;
-use super::predict::{Prediction, Predictor};
 use super::report::Knob;
 use coeff_io::{Bounces, Quality, Sampler, Settings};
 
 /// Bands that the reference has beyond those asked for, at least, and in all.
 const MORE_BANDS: u32 = 3;
 const REFERENCE_BANDS: u32 = 8;
+/// Rays of the first trial, which is made whatever the budget.
+const FEW_RAYS: u32 = 64;
 
 /// A bake to be made.
 #[derive(Debug, Clone)]
@@ -16,22 +17,6 @@ pub(super) struct Trial {
     /// The options that make it.
     pub(super) setting: String,
     pub(super) settings: Settings,
-    pub(super) estimate: Prediction,
-}
-
-/// What a trial turns.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Turn {
-    /// An error level, and else as asked.
-    Error(f32),
-    /// A fixed number of rays.
-    Rays(u32),
-    /// A fixed number of rays along another sequence.
-    Sampler(Sampler, u32),
-    /// The error asked for, with so many bounces.
-    Bounces(u32),
-    /// The error asked for, in so many bands.
-    Bands(u32),
 }
 
 /// Bands of the reference.
@@ -43,54 +28,6 @@ pub(super) fn reference_bands(bands: u32) -> u32 {
 pub(super) fn level(error: f32) -> f32 {
     let text = format!("{:.1e}", error.clamp(1e-4, 1.0));
     text.parse().unwrap_or(error)
-}
-
-/// All turns, the most telling first.
-pub(super) fn turns(request: &Request<'_>) -> Vec<Turn> {
-    let (e, bands) = (request.targets.error, request.settings.bands);
-    let other = |n: u32| (n != bands && n <= reference_bands(bands)).then_some(Turn::Bands(n));
-    let (fibonacci, stratified) = (Sampler::Fibonacci, Sampler::Stratified);
-    let always = [Turn::Error(e), Turn::Error(level(2.0 * e)), Turn::Rays(256), Turn::Bounces(1)];
-    let then = [Turn::Sampler(fibonacci, 256), Turn::Sampler(stratified, 256), Turn::Rays(1024), Turn::Bounces(0)];
-    let finer = [Turn::Error(level(0.5 * e)), Turn::Bounces(2), Turn::Sampler(fibonacci, 1024)];
-    let last = [Turn::Sampler(stratified, 1024), Turn::Rays(4096), Turn::Bounces(4), Turn::Error(level(0.25 * e))];
-    let mut turns = always.to_vec();
-    turns.extend(other(3));
-    turns.extend(then);
-    turns.extend([other(4), other(2), other(6)].into_iter().flatten());
-    turns.extend(finer);
-    turns.extend(other(8));
-    turns.extend(last);
-    turns.dedup_by(|a, b| matches!((a, b), (Turn::Error(a), Turn::Error(b)) if a == b));
-    turns
-}
-
-/// The bake of a turn, before anything is known about its time.
-pub(super) fn bake_of(request: &Request<'_>, turn: Turn) -> (Knob, String, Settings) {
-    let error = request.targets.error;
-    let settings = |quality: Quality| Settings { quality, ..request.settings.clone() };
-    let (knob, words, settings) = match turn {
-        Turn::Error(e) => (Knob::Error, format!("--error {e}"), settings(Quality::Error(e))),
-        Turn::Rays(n) => (Knob::Rays, format!("--rays {n}"), settings(Quality::Rays(n))),
-        Turn::Sampler(sampler, n) => {
-            let name = match sampler {
-                Sampler::OwenSobol => "owen-sobol",
-                Sampler::Fibonacci => "fibonacci",
-                Sampler::Stratified => "stratified",
-            };
-            let settings = Settings { sampler, ..settings(Quality::Rays(n)) };
-            (Knob::Sampler, format!("--rays {n} --sampler {name}"), settings)
-        }
-        Turn::Bounces(n) => {
-            let settings = Settings { bounces: Bounces::Fixed(n), ..settings(Quality::Error(error)) };
-            (Knob::Bounces, format!("--error {error} --bounces {n}"), settings)
-        }
-        Turn::Bands(bands) => {
-            let settings = Settings { bands, ..settings(Quality::Error(error)) };
-            (Knob::Bands, format!("--error {error}"), settings)
-        }
-    };
-    (knob, format!("{}{words}", prefix(&settings)), settings)
 }
 
 /// The options that a bake needs beside those of its knob.
@@ -106,19 +43,68 @@ pub(super) fn prefix(settings: &Settings) -> String {
     text
 }
 
-/// All trials with what each will take.
-pub(super) fn trials(request: &Request<'_>, predictor: &Predictor) -> Vec<Trial> {
-    let (error, bands) = (f64::from(request.targets.error), request.settings.bands);
-    let estimate = |turn: Turn| match turn {
-        Turn::Error(e) => predictor.level(f64::from(e), bands),
-        // A bake with fixed rays bounces as one to an error of 1 %.
-        Turn::Rays(n) | Turn::Sampler(_, n) => predictor.fixed(n, predictor.level_bounces(0.01), bands),
-        Turn::Bounces(_) => predictor.level(error, bands),
-        Turn::Bands(n) => predictor.level(error, n),
+/// The bake as asked.
+pub(super) fn as_asked(request: &Request<'_>) -> Trial {
+    to_error(request, request.targets.error)
+}
+
+/// All trials, the most telling first: a few rays, the bake as asked, then one knob at a time.
+pub(super) fn trials(request: &Request<'_>) -> Vec<Trial> {
+    let e = request.targets.error;
+    let most = reference_bands(request.settings.bands);
+    let bands = |n: u32| (n != request.settings.bands && n <= most).then(|| in_bands(request, n));
+    let along = |sampler: Sampler, n: u32| sampled(request, sampler, n);
+    let (usual, fibonacci, stratified) = (Sampler::OwenSobol, Sampler::Fibonacci, Sampler::Stratified);
+    let first = [along(usual, FEW_RAYS), as_asked(request), to_error(request, level(4.0 * e)), along(usual, 256)];
+    let then = [bouncing(request, 1), along(fibonacci, 256), along(stratified, 256), along(usual, 1024)];
+    let finer = [bouncing(request, 0), to_error(request, level(2.0 * e)), to_error(request, level(0.5 * e))];
+    let last = [bouncing(request, 2), along(fibonacci, 1024), along(stratified, 1024), along(usual, 4096)];
+    let rest = [bouncing(request, 4), to_error(request, level(0.25 * e))];
+    let mut trials = first.to_vec();
+    trials.extend(bands(3));
+    trials.extend(then);
+    trials.extend([bands(4), bands(2), bands(6)].into_iter().flatten());
+    trials.extend(finer);
+    trials.extend(bands(8));
+    trials.extend(last);
+    trials.extend(rest);
+    // Levels at the ends of what is allowed may be the same.
+    let mut seen = Vec::new();
+    trials.retain(|trial| {
+        !seen.contains(&trial.setting) && {
+            seen.push(trial.setting.clone());
+            true
+        }
+    });
+    trials
+}
+
+fn trial(knob: Knob, words: &str, settings: Settings) -> Trial {
+    Trial { knob, setting: format!("{}{words}", prefix(&settings)), settings }
+}
+
+fn to_error(request: &Request<'_>, e: f32) -> Trial {
+    let settings = Settings { quality: Quality::Error(e), ..request.settings.clone() };
+    trial(Knob::Error, &format!("--error {e}"), settings)
+}
+
+fn bouncing(request: &Request<'_>, n: u32) -> Trial {
+    let asked = as_asked(request);
+    let words = format!("--error {} --bounces {n}", request.targets.error);
+    trial(Knob::Bounces, &words, Settings { bounces: Bounces::Fixed(n), ..asked.settings })
+}
+
+fn in_bands(request: &Request<'_>, bands: u32) -> Trial {
+    let asked = as_asked(request);
+    trial(Knob::Bands, &format!("--error {}", request.targets.error), Settings { bands, ..asked.settings })
+}
+
+fn sampled(request: &Request<'_>, sampler: Sampler, n: u32) -> Trial {
+    let settings = Settings { sampler, quality: Quality::Rays(n), ..request.settings.clone() };
+    let name = match sampler {
+        Sampler::OwenSobol => return trial(Knob::Rays, &format!("--rays {n}"), settings),
+        Sampler::Fibonacci => "fibonacci",
+        Sampler::Stratified => "stratified",
     };
-    let trial = |turn: Turn| {
-        let (knob, setting, settings) = bake_of(request, turn);
-        Trial { knob, setting, settings, estimate: estimate(turn) }
-    };
-    turns(request).into_iter().map(trial).collect()
+    trial(Knob::Sampler, &format!("--rays {n} --sampler {name}"), settings)
 }

@@ -3,10 +3,9 @@
 //! Half the difference of the two is the reference's own error, receiver by receiver: both err independently, so their mean
 //! errs by as much, as a root of mean squares.
 
-use super::bakes::{Bakes, Timed};
+use super::bakes::{Bakes, Check, Effort};
 use super::deviation::{Spread, Truth};
 use super::frames::truncated;
-use super::predict::{Check, Prediction, Predictor};
 use super::report::ReferenceFacts;
 use super::trials::{level, reference_bands};
 use super::{Error, Request};
@@ -17,7 +16,13 @@ use sh_math::Bands;
 /// Share of the time left that the two bakes may take.
 const SHARE: f64 = 0.45;
 /// What bounces beyond the last one may still change, against the error asked for.
-const BOUNCE_SHARE: f64 = 0.04;
+const BOUNCE_SHARE: f32 = 0.1;
+/// Rays of the trial from which the time of many is reckoned.
+const TRIAL_RAYS: u32 = 256;
+/// The power of the rays over the error, near enough to choose by.
+const EXPONENT: f64 = 1.4;
+/// Bytes that a surface seen takes while a bake keeps it for the bounces, at most.
+const SEEN_BYTES: f64 = 24.0;
 
 /// The reference and what is known about it.
 #[derive(Debug)]
@@ -33,20 +38,18 @@ pub(super) struct Reference {
 ///
 /// # Errors
 /// As a bake.
-pub(super) fn reference(
-    request: &Request<'_>,
-    predictor: &Predictor,
-    bakes: &mut Bakes<'_>,
-) -> Result<Reference, Error> {
+pub(super) fn reference(request: &Request<'_>, bakes: &mut Bakes<'_>) -> Result<Reference, Error> {
+    bakes.tell("predicting", 0, 1)?;
     let bands = reference_bands(request.settings.bands);
-    let bounces = predictor.level_bounces(BOUNCE_SHARE * f64::from(request.targets.error));
-    let (quality, level, predicted) = choose(request, predictor, bounces, SHARE * bakes.left());
+    let base = Settings { bands, ..request.settings.clone() };
+    let fine = Settings { quality: Quality::Error(level(BOUNCE_SHARE * request.targets.error)), ..base.clone() };
+    let plan = bake::plan(&bakes.scene, &Settings { refine: coeff_io::Refine::Off, ..fine })?;
+    let base = Settings { bounces: Bounces::Fixed(plan.expected_bounces), ..base };
+    let choice = choose(request, &base, plan.shadowed_receivers as f64, bakes)?;
     let settings = |k: u64| Settings {
-        bands,
-        quality,
-        bounces: Bounces::Fixed(bounces),
+        quality: choice.quality,
         seed: rng::hash(request.settings.seed, 0x7275_7468, k),
-        ..request.settings.clone()
+        ..base.clone()
     };
     let first = bakes.bake("reference, 1 of 2", &settings(1))?;
     let second = bakes.bake("reference, 2 of 2", &settings(2))?;
@@ -54,48 +57,57 @@ pub(super) fn reference(
     let light = sh_math::project(supported(bands), request.environment.samples()).values;
     let truth = Truth { transfer, light };
     let own = truth.deviation(&truncated(&first.prt.transfer, request.settings.bands));
-    let came = came(&first);
+    let shadowed = plan.shadowed_receivers.max(1) as f64;
+    let rays = first.prt.achieved.visibility_rays + second.prt.achieved.visibility_rays;
     let facts = ReferenceFacts {
-        level,
+        level: choice.words.clone(),
         bands,
         own: Spread::of(&own.receivers),
         own_radiance: own.radiance,
-        rays_per_receiver: came.rays_per_receiver + self::came(&second).rays_per_receiver,
-        bounces: came.bounces,
+        rays_per_receiver: rays as f64 / shadowed,
+        bounces: first.prt.achieved.bounces,
         seconds: first.seconds + second.seconds,
     };
-    let check = Check { name: format!("reference, 1 of 2: {}", facts.level), predicted, came: Some(came) };
+    let name = format!("reference, 1 of 2: {}", choice.words);
+    let check = Check { name, predicted: choice.predicted, came: Some(first.effort()) };
     Ok(Reference { truth, facts, check, prt: first.prt })
 }
 
-/// The best quality whose two bakes take no more than so many seconds; the poorest where none does.
-fn choose(request: &Request<'_>, predictor: &Predictor, bounces: u32, seconds: f64) -> (Quality, String, Prediction) {
-    let (error, bands) = (request.targets.error, reference_bands(request.settings.bands));
-    let rays = |n: u32| (Quality::Rays(n), format!("{n} rays"), predictor.fixed(n, bounces, bands));
+/// How the reference is baked.
+#[derive(Debug, Clone)]
+struct Choice {
+    quality: Quality,
+    words: String,
+    predicted: Effort,
+}
+
+/// The best quality whose two bakes take no more than their share of the time left; the poorest where none does.
+fn choose(request: &Request<'_>, base: &Settings, shadowed: f64, bakes: &Bakes<'_>) -> Result<Choice, Error> {
+    let error = request.targets.error;
+    let few = bakes.predict(&Settings { quality: Quality::Rays(TRIAL_RAYS), ..base.clone() })?;
+    let asked = bakes.predict(&Settings { quality: Quality::Error(error), ..base.clone() })?;
+    let times = |effort: Effort, factor: f64| Effort { seconds: effort.seconds * factor, rays: effort.rays * factor };
+    let rays = |n: u32| Choice {
+        quality: Quality::Rays(n),
+        words: format!("{n} rays"),
+        predicted: times(few, f64::from(n) / f64::from(TRIAL_RAYS)),
+    };
     let to = |factor: f32| {
         let e = level(factor * error);
-        (Quality::Error(e), format!("--error {e}"), predictor.level(f64::from(e), bands))
+        let predicted = times(asked, f64::from(error / e).powf(EXPONENT));
+        Choice { quality: Quality::Error(e), words: format!("error level {e}"), predicted }
     };
     let ladder =
         [rays(16384), rays(8192), rays(4096), to(0.25), rays(2048), to(0.5), rays(1024), to(1.0), to(2.0), to(4.0)];
-    let fits = |(quality, _, predicted): &(Quality, String, Prediction)| {
-        // Surfaces that do not fit into memory would be traced anew for each bounce.
-        let kept =
-            !matches!(quality, Quality::Rays(n) if predictor.seen_bytes(*n) > 0.5 * request.settings.memory as f64);
-        kept && 2.0 * predicted.seconds <= seconds
+    let seconds = SHARE * bakes.left();
+    let fits = |choice: &Choice| {
+        let bytes = |n: u32| SEEN_BYTES * f64::from(n) * shadowed;
+        // Surfaces that do not fit into memory would be looked for anew at each bounce.
+        let kept = !matches!(choice.quality, Quality::Rays(n) if bytes(n) > 0.5 * request.settings.memory as f64);
+        kept && 2.0 * choice.predicted.seconds <= seconds
     };
     let poorest = ladder[ladder.len() - 1].clone();
-    ladder.into_iter().find(fits).unwrap_or(poorest)
-}
-
-/// What a bake took, in the terms of a prediction.
-pub(super) fn came(timed: &Timed) -> Prediction {
-    let shadowed = timed.prt.plan.shadowed_receivers.max(1) as f64;
-    Prediction {
-        seconds: timed.seconds,
-        rays_per_receiver: timed.prt.achieved.visibility_rays as f64 / shadowed,
-        bounces: timed.prt.achieved.bounces,
-    }
+    Ok(ladder.into_iter().find(fits).unwrap_or(poorest))
 }
 
 /// The mean of two transfers of the same shape.

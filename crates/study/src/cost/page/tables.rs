@@ -1,6 +1,6 @@
 //! The tables of the page.
 
-use super::super::predict::{Check, Prediction};
+use super::super::bakes::Check;
 use super::super::report::{Knob, Report, Run};
 use super::insight::insight;
 use super::{bytes, escaped, seconds, share};
@@ -93,8 +93,8 @@ pub(super) fn resolution(report: &Report) -> String {
     };
     let rows: String = resolution.runs.iter().zip(&resolution.edges).enumerate().map(row).collect();
     format!(
-        "<h2>Storage resolution</h2>\n<p>Vertices carry the transfer. Each mesh is read, by interpolation, at the vertices of the finest; \
-         the noise of both bakes is in the numbers.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>options</th><th>longest edge</th>\
+        "<h2>Storage resolution</h2>\n<p>Vertices carry the transfer. Each mesh is read, by interpolation, at the vertices of the finest, which \
+         has those of the mesh as asked and no long edges; the noise of both bakes is in the numbers.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>options</th><th>longest edge</th>\
          <th>receivers</th><th>radiance</th><th>error, 95 %</th><th>time</th><th>bytes</th></tr></thead>\n<tbody>\n{rows}</tbody>\n\
          </table></div>\n"
     )
@@ -122,34 +122,54 @@ pub(super) fn frames(report: &Report) -> String {
 
 /// What was predicted, and what came.
 pub(super) fn predictions(report: &Report) -> String {
-    let rows: String = report.checks.iter().map(prediction).collect();
+    let rows: String = report.checks.iter().map(|check| prediction(report, check)).collect();
     format!(
-        "<h2>Predicted and measured</h2>\n<p>Before a bake starts its time is predicted from three short ones: 64 fixed rays, the \
-         coarsest error level, and four times the error asked for. The error of each receiver at the coarsest level gives the rays that \
-         it will need (error falls with rays to the power of -3/4, in doublings), scaled by what the third bake needed; time is rays \
-         times seconds per ray, plus bounces times surfaces seen times seconds per surface.</p>\n<div class=\"wide\"><table>\n<thead>\
-         <tr><th>bake</th><th>predicted</th><th>came</th><th>predicted / came</th><th>rays / receiver</th><th>bounces</th></tr></thead>\n\
-         <tbody>\n{rows}</tbody>\n</table></div>\n"
+        "<h2>Predicted and measured</h2>\n<p>Before a bake starts, a few hundred receivers in runs of neighbours, evenly drawn over the \
+         surfaces, are baked for trial on this machine; their time and rays are scaled to all receivers. {} Half of the reference is \
+         reckoned from trials at fewer rays.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>bake</th><th>predicted</th><th>came</th>\
+         <th>predicted / came</th><th>rays predicted</th><th>rays traced</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n",
+        honesty(report)
     )
 }
 
-fn prediction(check: &Check) -> String {
-    let p = &check.predicted;
-    let [came, ratio] = match &check.came {
-        Some(came) => [seconds(came.seconds), format!("{:.2}", p.seconds / came.seconds)],
-        None => ["not run: see what was left out".to_owned(), String::new()],
-    };
-    let pair = |of: &dyn Fn(&Prediction) -> String| match &check.came {
-        Some(came) => format!("{} / {}", of(p), of(came)),
-        None => of(p),
+/// How far the predictions of time were from what came.
+fn honesty(report: &Report) -> String {
+    let came = report.checks.iter().filter_map(|check| Some(check.predicted.seconds / check.came?.seconds));
+    let mut ratios: Vec<f64> = came.filter(|r| r.is_finite()).collect();
+    ratios.sort_by(f64::total_cmp);
+    match ratios[..] {
+        [] => String::new(),
+        [least, .., most] => {
+            let middle = ratios[ratios.len() / 2];
+            format!("Here the predictions were {middle:.2} times what came (median; {least:.2} to {most:.2}).")
+        }
+        [only] => format!("Here the prediction was {only:.2} times what came."),
+    }
+}
+
+fn prediction(report: &Report, check: &Check) -> String {
+    let class = if check.name == report.runs[report.shown].setting { " class=\"asked\"" } else { "" };
+    let [came, ratio, rays] = match &check.came {
+        Some(came) => {
+            let ratio = check.predicted.seconds / came.seconds;
+            [seconds(came.seconds), format!("{ratio:.2}"), count(came.rays)]
+        }
+        None => ["left out".to_owned(), String::new(), String::new()],
     };
     format!(
-        "<tr><td>{}</td><td>{}</td><td>{came}</td><td>{ratio}</td><td>{}</td><td>{}</td></tr>\n",
+        "<tr{class}><td>{}</td><td>{}</td><td>{came}</td><td>{ratio}</td><td>{}</td><td>{rays}</td></tr>\n",
         escaped(&check.name),
-        seconds(p.seconds),
-        pair(&|p| format!("{:.0}", p.rays_per_receiver)),
-        pair(&|p| p.bounces.to_string()),
+        seconds(check.predicted.seconds),
+        count(check.predicted.rays),
     )
+}
+
+/// A count of rays for people.
+fn count(rays: f64) -> String {
+    match rays {
+        r if r >= 1e6 => format!("{:.1} million", r * 1e-6),
+        r => format!("{r:.0}"),
+    }
 }
 
 /// The receivers that err most.
