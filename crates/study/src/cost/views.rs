@@ -7,7 +7,7 @@ use probe_io::Environment;
 use render_cpu::{Frame, Renderer, Tonemap};
 
 /// Columns and rows of the pictures.
-const SIZE: [u32; 2] = [512, 288];
+const SIZE: [u32; 2] = [400, 225];
 /// Samples along each side of a pixel.
 const SUPERSAMPLE: u32 = 2;
 /// Mean luminance that the baked picture is exposed to, before the tone curve.
@@ -96,9 +96,12 @@ fn frame(prt: &Prt) -> Frame {
     Frame { supersample: SUPERSAMPLE, ..Frame::plain(prt.cameras[0].clone(), SIZE[0], SIZE[1]) }
 }
 
+/// Steps between two colours of the ramp: few colours make small pictures, and the eye tells no more apart.
+const STEPS: f32 = 4.0;
+
 /// The colour of a value in [0, 1].
 fn ramp(value: f32) -> [u8; 3] {
-    let place = value.clamp(0.0, 1.0) * (RAMP.len() - 1) as f32;
+    let place = (value.clamp(0.0, 1.0) * (RAMP.len() - 1) as f32 * STEPS).round() / STEPS;
     let below = (place as usize).min(RAMP.len() - 2);
     let [a, b] = [RAMP[below], RAMP[below + 1]].map(|c| Vec3::from(c.map(f32::from)));
     a.lerp(b, place - below as f32).to_array().map(|v| (v + 0.5) as u8)
