@@ -3,8 +3,10 @@
 //! A receiver picks a set and a turn about its normal by a hash of its index. Directions are in the local frame
 //! (z along the normal); the local coefficients are rotated into the world once per receiver.
 
+use crate::foresight::Surroundings;
 use coeff_io::{Quality, Sampler, Settings};
 use glam::Vec3;
+use rayon::prelude::*;
 use sampling::sequence::{self, Sequence};
 use sampling::{rng, warp};
 use sh_math::{Bands, zonal};
@@ -28,6 +30,8 @@ pub(crate) struct DirectionSet {
     pub(crate) basis: Vec<f32>,
     /// Ends of the steps, in directions.
     pub(crate) steps: Vec<Step>,
+    /// Which directions lie around those after the first step.
+    pub(crate) surroundings: Surroundings,
 }
 
 /// The end of a step of a set, with the sums up to there over all directions.
@@ -67,7 +71,10 @@ impl DirectionBank {
             [libm::cos(angle) as f32, libm::sin(angle) as f32]
         });
         Self {
-            sets: (0..n_sets).map(|k| DirectionSet::new(bands, settings, rng::hash(settings.seed, 0x5e7, k))).collect(),
+            sets: (0..n_sets)
+                .into_par_iter()
+                .map(|k| DirectionSet::new(bands, settings, rng::hash(settings.seed, 0x5e7, k)))
+                .collect(),
             turns: turns.collect(),
             seed: settings.seed,
             open_norm: open.iter().map(|x| x * x).sum::<f64>().sqrt(),
@@ -93,9 +100,13 @@ impl DirectionSet {
             weights: Vec::new(),
             basis: Vec::new(),
             steps: Vec::new(),
+            surroundings: Surroundings::default(),
         };
         set.fill(settings.sampler, count, &ends, seed);
         set.evaluate(bands);
+        if ends.len() > 1 {
+            set.surroundings = Surroundings::new(&set.xs, &set.ys, &ends);
+        }
         let n = set.xs.len();
         for end in ends {
             // A set over the whole sphere has fewer directions than samples, and a single step.

@@ -1,6 +1,7 @@
 //! What one receiver sees: its direct transfer, and the surfaces that block its view.
 
 use crate::directions::{DirectionBank, DirectionSet, Step};
+use crate::foresight::Choice;
 use crate::hit::{NearPoint, PackedHit, near_points, packed};
 use crate::receivers::Receiver;
 use crate::world::World;
@@ -51,8 +52,15 @@ pub(crate) struct Gathered {
 /// Buffers that a thread keeps between receivers. Contents never change results.
 pub(crate) struct Worker {
     fan: FanState,
+    /// World directions of the set, and those of them that a step traces.
     directions: [Vec<f32>; 3],
-    blocked: Vec<u64>,
+    traced: [Vec<f32>; 3],
+    /// What the traced directions met: a bit each.
+    met: Vec<u64>,
+    choice: Choice,
+    /// 1 where a direction is blocked, 0 where it is open.
+    blocked: Vec<u8>,
+    /// What each direction of a step adds to the open sum.
     open: Vec<f32>,
     wanted: Vec<u64>,
     nearest: Vec<Option<Hit>>,
@@ -63,6 +71,9 @@ impl Worker {
         Self {
             fan: FanState::default(),
             directions: Default::default(),
+            traced: Default::default(),
+            met: Vec::new(),
+            choice: Choice::default(),
             blocked: Vec::new(),
             open: Vec::new(),
             wanted: Vec::new(),
@@ -91,12 +102,12 @@ impl Gatherer<'_> {
         let origin = offset_origin(receiver.position, receiver.geometric_normal);
         let (set, turn) = self.bank.pick(index);
         let world_from_local = turned_frame(receiver.normal, turn);
-        let seen = self.trace_visibility(origin, set, &world_from_local, self.rule(index), worker);
+        let seen = self.trace_visibility(origin, set, &world_from_local, index, worker);
         let mut out = Gathered {
             transfer: seen.local.iter().map(|&x| x as f32).collect(),
             openness: seen.openness as f32,
             error: seen.error as f32,
-            visibility_rays: set.steps[seen.step].end as u64,
+            visibility_rays: seen.rays,
             ..Gathered::default()
         };
         Rotation::from_matrix(self.bands, world_from_local.as_dmat3()).apply(&mut out.transfer);
@@ -127,29 +138,31 @@ impl Gatherer<'_> {
         origin: Vec3,
         set: &DirectionSet,
         frame: &Mat3,
-        rule: Doubling,
+        index: u32,
         worker: &mut Worker,
     ) -> Seen {
+        let rule = self.rule(index);
         worker.directions.iter_mut().for_each(Vec::clear);
         worker.blocked.clear();
         let mut progress = rule.start();
         let mut sums = vec![0.0f64; self.bands.coefficients()];
         let (mut open_weight, mut start) = (0.0, 0);
-        let mut seen = Seen { local: Vec::new(), openness: 1.0, error: 0.0, step: 0 };
-        for (index, step) in set.steps.iter().enumerate() {
+        let mut seen = Seen { local: Vec::new(), openness: 1.0, error: 0.0, step: 0, rays: 0 };
+        for (number, step) in set.steps.iter().enumerate() {
             rotate_directions(set, frame, step.end, &mut worker.directions);
-            self.trace_step(origin, start..step.end, worker);
+            worker.choice.choose(&set.surroundings, start..step.end, index, &mut worker.blocked);
+            seen.rays += self.trace_step(origin, start, worker);
             add_open(set, start..step.end, &worker.open, &mut sums);
             open_weight += dot(&set.weights[start..step.end], &worker.open);
             start = step.end;
-            seen.step = index;
+            seen.step = number;
             seen.openness = open_weight / step.weight;
             seen.local = self.corrected(&sums, seen.openness, step);
             match rule.look(&mut progress, step.end as u32, &seen.local) {
                 Verdict::Continue { .. } => {}
                 Verdict::Reached { error } | Verdict::Exhausted { error } => {
                     seen.error =
-                        if error.is_finite() { error.max(self.resolution(step)) / self.bank.open_norm } else { 0.0 };
+                        if error.is_finite() { error.max(self.resolution(seen.rays)) / self.bank.open_norm } else { 0.0 };
                     break;
                 }
             }
@@ -170,9 +183,9 @@ impl Gatherer<'_> {
 
     /// Half of what a single ray changes: no estimate is below it, since where all rays of two looks met the same the change is
     /// zero, however many more it would take to find the gap.
-    fn resolution(&self, step: &Step) -> f64 {
+    fn resolution(&self, rays: u64) -> f64 {
         // The squares of the basis add up to n^2 / (4 pi) in every direction.
-        0.5 * (self.bands.coefficients() as f64 / (4.0 * std::f64::consts::PI)).sqrt() / step.samples
+        0.5 * (self.bands.coefficients() as f64 / (4.0 * std::f64::consts::PI)).sqrt() / rays as f64
     }
 
     /// Adds to the sum over open directions what the sequence misses of the exact cosine lobe, in proportion to
@@ -182,22 +195,21 @@ impl Gatherer<'_> {
         terms.map(|((sum, full), open)| sum / step.samples + openness * (open - full / step.samples)).collect()
     }
 
-    fn trace_step(&self, origin: Vec3, range: std::ops::Range<usize>, worker: &mut Worker) {
-        let first_word = range.start / 64;
-        worker.blocked.resize(range.end.div_ceil(64), 0);
-        let [xs, ys, zs] = &worker.directions;
+    /// Traces the rays chosen of the step that begins at `start`; returns their number.
+    fn trace_step(&self, origin: Vec3, start: usize, worker: &mut Worker) -> u64 {
+        let Worker { fan, directions, traced, met, choice, blocked, open, .. } = worker;
+        for (out, all) in traced.iter_mut().zip(directions) {
+            out.clear();
+            out.extend(choice.traced.iter().map(|&j| all[j as usize]));
+        }
+        let rays = choice.traced.len();
+        met.clear();
+        met.resize(rays.div_ceil(64), 0);
+        let [xs, ys, zs] = traced;
         let solid = |triangle, u, v| self.world.solid(triangle, u, v);
-        self.world.tracer.occluded_fan(
-            origin,
-            &xs[range.clone()],
-            &ys[range.clone()],
-            &zs[range.clone()],
-            &solid,
-            &mut worker.fan,
-            &mut worker.blocked[first_word..],
-        );
-        worker.open.clear();
-        worker.open.extend(range.map(|j| if is_set(&worker.blocked, j) { 0.0 } else { 1.0 }));
+        self.world.tracer.occluded_fan(origin, xs, ys, zs, &solid, fan, met);
+        choice.settle(start, met, blocked, open);
+        rays as u64
     }
 
     /// Finds the nearest surface along blocked directions: \[G\] eq. (11) gathers over these only.
@@ -220,11 +232,11 @@ impl Gatherer<'_> {
             Quality::Rays(_) => end,
             Quality::Error(_) => MAX_BLOCKERS,
         };
-        let blocked: usize = worker.blocked.iter().map(|w| w.count_ones() as usize).sum();
+        let blocked: usize = worker.blocked.iter().map(|&b| b as usize).sum();
         worker.wanted.clear();
-        worker.wanted.resize(worker.blocked.len(), 0);
+        worker.wanted.resize(end.div_ceil(64), 0);
         let chosen = blocked.min(wanted);
-        let all_blocked = (0..end).filter(|&j| is_set(&worker.blocked, j));
+        let all_blocked = (0..end).filter(|&j| worker.blocked[j] == 1);
         for (before, j) in all_blocked.enumerate() {
             // The k-th of the chosen is the first that reaches k / chosen of all blocked.
             if (before + 1) * chosen / blocked > before * chosen / blocked {
@@ -268,6 +280,7 @@ struct Seen {
     openness: f64,
     error: f64,
     step: usize,
+    rays: u64,
 }
 
 /// Columns: tangent, bitangent, normal; turned about the normal.
@@ -310,8 +323,4 @@ fn dot(a: &[f32], b: &[f32]) -> f64 {
         total += lanes.iter().map(|&x| f64::from(x)).sum::<f64>() + f64::from(rest);
     }
     total
-}
-
-fn is_set(bits: &[u64], j: usize) -> bool {
-    bits[j / 64] >> (j % 64) & 1 == 1
 }

@@ -18,6 +18,7 @@ mod drawn;
 mod error;
 mod facts;
 mod field;
+mod foresight;
 mod gather;
 mod hit;
 mod material;
