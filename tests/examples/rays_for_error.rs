@@ -1,5 +1,5 @@
 //! Prints how many rays a fixed number per receiver takes to reach the error that adaptive rays reach:
-//! `rays_for_error [SCENE ...]`, with a city and foliage of its own where none is named.
+//! `rays_for_error [SCENE ...]`, after a city and foliage of its own; the last rows hold the receivers of all scenes together.
 //!
 //! Error: 95th percentile over receivers of |T - truth| against an open receiver's |T|; the truth has 65,536 rays and another seed.
 
@@ -20,63 +20,100 @@ const ASKED: [f32; 2] = [0.02, 0.01];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let names: Vec<String> = std::env::args().skip(1).collect();
-    let mut scenes = Vec::new();
+    let mut scenes = vec![city(), foliage()];
     for name in &names {
-        scenes.push(match name.strip_prefix("builtin:") {
+        let mut scene = match name.strip_prefix("builtin:") {
             Some(builtin) => scene::builtin(builtin).ok_or("no such scene")?,
             None => scene::load(Path::new(name))?,
-        });
-    }
-    if names.is_empty() {
-        scenes = vec![city(), foliage()];
+        };
+        scene.name = Path::new(name).file_stem().map_or(name.clone(), |stem| stem.to_string_lossy().into_owned());
+        scenes.push(scene);
     }
     println!(
         "| scene | asked | 95 % of errors below | rays | fixed Owen-Sobol | ratio | fixed jittered sphere | ratio |"
     );
     println!("|---|---|---|---|---|---|---|---|");
+    let mut all = Curves::default();
     for scene in &scenes {
-        report(scene)?;
+        let curves = Curves::of(scene)?;
+        curves.print(&scene.name);
+        all.add(curves);
     }
+    all.print("all together");
     Ok(())
 }
 
-fn report(scene: &Scene) -> Result<(), Box<dyn Error>> {
-    let truth = look(scene, Sampler::OwenSobol, Quality::Rays(1 << 16), 1000)?;
-    let fixed = |sampler| -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
-        (7..=15).map(|power| Ok(measured(&look(scene, sampler, Quality::Rays(1 << power), 1)?, &truth))).collect()
-    };
-    let (sobol, stratified) = (fixed(Sampler::OwenSobol)?, fixed(Sampler::Stratified)?);
-    for asked in ASKED {
-        let [error, rays] = measured(&look(scene, Sampler::OwenSobol, Quality::Error(asked), 1)?, &truth);
-        let [a, b] = [&sobol, &stratified].map(|curve| rays_at(curve, error));
-        let tell = |n: Option<f64>| {
-            n.map_or(["more".into(), "-".into()], |n| [format!("{n:.0}"), format!("{:.1}", n / rays)])
+/// Receivers judged against the truth, at every quality looked at.
+#[derive(Default)]
+struct Curves {
+    /// For each error asked for.
+    asked: Vec<Judged>,
+    /// For each power of two of fixed rays.
+    sobol: Vec<Judged>,
+    stratified: Vec<Judged>,
+}
+
+impl Curves {
+    fn of(scene: &Scene) -> Result<Self, Box<dyn Error>> {
+        let truth = look(scene, Sampler::OwenSobol, Quality::Rays(1 << 16), 1000)?;
+        let judge = |sampler, quality| -> Result<Judged, bake::Error> {
+            Ok(Judged::of(&look(scene, sampler, quality, 1)?, &truth))
         };
-        let ([a, ra], [b, rb]) = (tell(a), tell(b));
-        println!("| {} | {asked} | {error:.4} | {rays:.0} | {a} | {ra} | {b} | {rb} |", scene.name);
+        let fixed = |sampler| (7..=15).map(|power| judge(sampler, Quality::Rays(1 << power))).collect::<Result<_, _>>();
+        let asked = ASKED.map(|error| judge(Sampler::OwenSobol, Quality::Error(error)));
+        Ok(Self {
+            asked: asked.into_iter().collect::<Result<_, _>>()?,
+            sobol: fixed(Sampler::OwenSobol)?,
+            stratified: fixed(Sampler::Stratified)?,
+        })
     }
-    Ok(())
+
+    fn add(&mut self, other: Self) {
+        let lists = [(&mut self.asked, other.asked), (&mut self.sobol, other.sobol)];
+        for (all, more) in lists.into_iter().chain([(&mut self.stratified, other.stratified)]) {
+            all.resize_with(more.len(), Judged::default);
+            all.iter_mut().zip(more).for_each(|(all, more)| all.0.extend(more.0));
+        }
+    }
+
+    fn print(&self, name: &str) {
+        for (asked, judged) in ASKED.into_iter().zip(&self.asked) {
+            let [error, rays] = judged.summary();
+            let tell = |curve: &[Judged]| {
+                let n = rays_at(&curve.iter().map(Judged::summary).collect::<Vec<_>>(), error);
+                n.map_or(["more".into(), "-".into()], |n| [format!("{n:.0}"), format!("{:.1}", n / rays)])
+            };
+            let ([a, ra], [b, rb]) = (tell(&self.sobol), tell(&self.stratified));
+            println!("| {name} | {asked} | {error:.4} | {rays:.0} | {a} | {ra} | {b} | {rb} |");
+        }
+    }
+}
+
+/// True error and rays of receivers.
+#[derive(Default)]
+struct Judged(Vec<[f64; 2]>);
+
+impl Judged {
+    fn of(judged: &[Sampled], truth: &[Sampled]) -> Self {
+        let open = sh_math::Bands::new(bake::settings::standard().bands).map_or(1.0, |bands| {
+            let mut lobe = vec![0.0f32; bands.coefficients()];
+            sh_math::zonal::cosine_transfer(bands, Vec3::Z, &mut lobe);
+            norm(lobe.iter().copied())
+        });
+        let error = |a: &Sampled, b: &Sampled| norm(a.transfer.iter().zip(&b.transfer).map(|(x, y)| x - y)) / open;
+        Self(judged.iter().zip(truth).map(|(a, b)| [error(a, b), a.rays as f64]).collect())
+    }
+
+    /// 95th percentile of the error, and mean rays.
+    fn summary(&self) -> [f64; 2] {
+        let mut errors: Vec<f64> = self.0.iter().map(|j| j[0]).collect();
+        errors.sort_by(f64::total_cmp);
+        [errors[errors.len() * 95 / 100], self.0.iter().map(|j| j[1]).sum::<f64>() / self.0.len() as f64]
+    }
 }
 
 fn look(scene: &Scene, sampler: Sampler, quality: Quality, seed: u64) -> Result<Vec<Sampled>, bake::Error> {
     sample(scene, &Settings { sampler, quality, seed, refine: Refine::Off, ..bake::settings::standard() }, RECEIVERS)
-}
-
-/// 95th percentile of the true error, and mean rays traced.
-fn measured(judged: &[Sampled], truth: &[Sampled]) -> [f64; 2] {
-    let open = sh_math::Bands::new(bake::settings::standard().bands).map_or(1.0, |bands| {
-        let mut lobe = vec![0.0f32; bands.coefficients()];
-        sh_math::zonal::cosine_transfer(bands, Vec3::Z, &mut lobe);
-        norm(lobe.iter().copied())
-    });
-    let mut errors: Vec<f64> = judged
-        .iter()
-        .zip(truth)
-        .map(|(a, b)| norm(a.transfer.iter().zip(&b.transfer).map(|(x, y)| x - y)) / open)
-        .collect();
-    errors.sort_by(f64::total_cmp);
-    let rays = judged.iter().map(|j| j.rays as f64).sum::<f64>() / judged.len() as f64;
-    [errors[errors.len() * 95 / 100], rays]
 }
 
 fn norm(values: impl Iterator<Item = f32>) -> f64 {

@@ -170,7 +170,8 @@ impl Choice {
             let value = if state == 0 { 1.0 } else { 0.0 };
             blocked[j as usize] = state;
             let out = &mut open[j as usize - start];
-            *out = if foreseen == 2 || foreseen == state { value } else { *out + (value - *out) * self.factor(foreseen) };
+            *out =
+                if foreseen == 2 || foreseen == state { value } else { *out + (value - *out) * self.factor(foreseen) };
         }
     }
 }

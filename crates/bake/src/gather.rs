@@ -161,8 +161,11 @@ impl Gatherer<'_> {
             match rule.look(&mut progress, step.end as u32, &seen.local) {
                 Verdict::Continue { .. } => {}
                 Verdict::Reached { error } | Verdict::Exhausted { error } => {
-                    seen.error =
-                        if error.is_finite() { error.max(self.resolution(seen.rays)) / self.bank.open_norm } else { 0.0 };
+                    seen.error = if error.is_finite() {
+                        error.max(self.resolution(seen.rays)) / self.bank.open_norm
+                    } else {
+                        0.0
+                    };
                     break;
                 }
             }
