@@ -24,9 +24,6 @@ use std::ops::ControlFlow;
 /// Called while a bake runs; returning `Break` cancels it.
 pub type ProgressFn<'a> = &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync);
 
-/// Average blockers that a receiver is assumed to see when memory is estimated.
-const TYPICAL_HITS: u64 = 256;
-
 /// Tolerances that a near surface must send on to get a receiver of its own.
 pub(crate) const NEAR_WORTH: f32 = 8.0;
 
@@ -95,6 +92,8 @@ struct Run<'a> {
     findings: Vec<Finding>,
     errors: Vec<f32>,
     achieved: Achieved,
+    /// Bytes left for what receivers see; where they run out, each bounce finds it again.
+    room: u64,
 }
 
 impl<'a> Run<'a> {
@@ -116,6 +115,7 @@ impl<'a> Run<'a> {
             findings: vec![Finding::default(); n],
             errors: vec![0.0; n],
             achieved: Achieved::default(),
+            room: 0,
             monitor: Monitor::new(progress),
             gatherer,
             receivers,
@@ -126,15 +126,18 @@ impl<'a> Run<'a> {
 
     fn finish(mut self, scene: &Scene) -> Result<Prt, Error> {
         let all = (0..self.receivers.list.len() as u32).collect();
-        let keep = self.gatherer.hits && self.hits_fit();
-        let mut chunks = self.first_pass(all, Stage::Visibility, keep)?;
-        chunks.extend(self.move_out(scene, keep)?);
+        self.room = self.settings.memory.saturating_sub(self.field_bytes());
+        let mut chunks = self.first_pass(all, Stage::Visibility)?;
+        chunks.extend(self.move_out(scene)?);
         let repair = Repair::plan(scene, &self.receivers, &self.findings);
         self.achieved.repairs = RepairCounts { inside: self.achieved.repairs.inside, ..repair.counts };
         repair.apply(&mut self.last);
         let mut transfer = self.last.clone();
         if self.gatherer.hits {
-            chunks.extend(self.add_helpers(keep)?);
+            chunks.extend(self.add_helpers()?);
+            // The helpers made the fields larger.
+            let mut room = self.settings.memory.saturating_sub(self.field_bytes());
+            chunks.iter_mut().for_each(|chunk| chunk.keep_within(&mut room));
             transfer.grow(self.receivers.list.len());
             self.bounce(&chunks, &repair, &mut transfer)?;
         }
@@ -149,7 +152,7 @@ impl<'a> Run<'a> {
     }
 
     /// Receivers inside bodies look again from where their surface comes out.
-    fn move_out(&mut self, scene: &Scene, keep: bool) -> Result<Vec<Chunk>, Error> {
+    fn move_out(&mut self, scene: &Scene) -> Result<Vec<Chunk>, Error> {
         let inside: Vec<bool> =
             self.findings[..self.receivers.permanent].iter().map(|finding| finding.is_inside()).collect();
         self.achieved.repairs.inside = inside.iter().filter(|&&is| is).count() as u32;
@@ -161,26 +164,16 @@ impl<'a> Run<'a> {
         for (id, position) in moved {
             self.receivers.list[id as usize].position = position;
         }
-        self.first_pass(ids, Stage::Helpers, keep)
+        self.first_pass(ids, Stage::Helpers)
     }
 
-    /// Whether what all receivers see may be kept in memory; otherwise each bounce finds it again.
-    fn hits_fit(&self) -> bool {
-        let fields = 3 * Field::bytes(self.receivers.list.len(), self.last.coefficients, self.last.channels);
-        let hits = self.plan.shadowed_receivers * self.assumed_hits() * size_of::<crate::hit::PackedHit>() as u64;
-        fields + hits <= self.settings.memory
-    }
-
-    /// Surfaces that a receiver is assumed to see: all that a fixed number of rays can find, or the usual number.
-    fn assumed_hits(&self) -> u64 {
-        match self.settings.quality {
-            Quality::Rays(n) => u64::from(n),
-            Quality::Error(_) => TYPICAL_HITS,
-        }
+    /// Bytes that the fields of the bounces take: the bounce before, the next, and the sum.
+    fn field_bytes(&self) -> u64 {
+        3 * Field::bytes(self.receivers.list.len(), self.last.coefficients, self.last.channels)
     }
 
     /// What the given receivers see directly; those that they want beside them are added to the list.
-    fn first_pass(&mut self, ids: Vec<u32>, stage: Stage, keep: bool) -> Result<Vec<Chunk>, Error> {
+    fn first_pass(&mut self, ids: Vec<u32>, stage: Stage) -> Result<Vec<Chunk>, Error> {
         let (last, findings, errors) = (&mut self.last, &mut self.findings, &mut self.errors);
         let achieved = &mut self.achieved;
         let mut wanted = Wanted { worth: tolerance(self.settings.quality), ..Wanted::default() };
@@ -195,7 +188,8 @@ impl<'a> Run<'a> {
                 wanted.note(id, seen);
             }
         };
-        let chunks = gather_pass(&self.gatherer, &self.receivers, ids, stage, keep, &self.monitor, &mut sink)?;
+        let chunks =
+            gather_pass(&self.gatherer, &self.receivers, ids, stage, &mut self.room, &self.monitor, &mut sink)?;
         wanted.add_to(&mut self.receivers, self.gatherer.world);
         let n = self.receivers.list.len();
         self.last.grow(n);
@@ -206,13 +200,13 @@ impl<'a> Run<'a> {
 
     /// What light reaches beside the receivers of the file becomes receivers for the time of the bake, until none is new:
     /// near points, and the backs of surfaces. Where backs send less than the tolerance, the fronts stand in for them.
-    fn add_helpers(&mut self, keep: bool) -> Result<Vec<Chunk>, Error> {
+    fn add_helpers(&mut self) -> Result<Vec<Chunk>, Error> {
         let mut chunks = Vec::new();
         let mut done = self.receivers.permanent as u32;
         while (done as usize) < self.receivers.list.len() {
             let new = (done..self.receivers.list.len() as u32).collect();
             done = self.receivers.list.len() as u32;
-            chunks.extend(self.first_pass(new, Stage::Helpers, keep)?);
+            chunks.extend(self.first_pass(new, Stage::Helpers)?);
         }
         Ok(chunks)
     }

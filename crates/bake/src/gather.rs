@@ -151,7 +151,7 @@ impl Gatherer<'_> {
         for (number, step) in set.steps.iter().enumerate() {
             rotate_directions(set, frame, step.end, &mut worker.directions);
             worker.choice.choose(&set.surroundings, start..step.end, index, &mut worker.blocked);
-            seen.rays += self.trace_step(origin, start, worker);
+            seen.rays += self.trace_step(origin, start..step.end, worker);
             add_open(set, start..step.end, &worker.open, &mut sums);
             open_weight += dot(&set.weights[start..step.end], &worker.open);
             start = step.end;
@@ -198,20 +198,24 @@ impl Gatherer<'_> {
         terms.map(|((sum, full), open)| sum / step.samples + openness * (open - full / step.samples)).collect()
     }
 
-    /// Traces the rays chosen of the step that begins at `start`; returns their number.
-    fn trace_step(&self, origin: Vec3, start: usize, worker: &mut Worker) -> u64 {
+    /// Traces the rays chosen of the step of directions `range`; returns their number.
+    fn trace_step(&self, origin: Vec3, range: std::ops::Range<usize>, worker: &mut Worker) -> u64 {
         let Worker { fan, directions, traced, met, choice, blocked, open, .. } = worker;
-        for (out, all) in traced.iter_mut().zip(directions) {
-            out.clear();
-            out.extend(choice.traced.iter().map(|&j| all[j as usize]));
-        }
         let rays = choice.traced.len();
         met.clear();
         met.resize(rays.div_ceil(64), 0);
-        let [xs, ys, zs] = traced;
+        let [xs, ys, zs] = if rays == range.len() {
+            directions.each_ref().map(|axis| &axis[range.clone()])
+        } else {
+            for (out, all) in traced.iter_mut().zip(directions) {
+                out.clear();
+                out.extend(choice.traced.iter().map(|&j| all[j as usize]));
+            }
+            traced.each_ref().map(|axis| &axis[..])
+        };
         let solid = |triangle, u, v| self.world.solid(triangle, u, v);
         self.world.tracer.occluded_fan(origin, xs, ys, zs, &solid, fan, met);
-        choice.settle(start, met, blocked, open);
+        choice.settle(range.start, met, blocked, open);
         rays as u64
     }
 

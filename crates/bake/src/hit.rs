@@ -20,8 +20,8 @@ pub(crate) struct NearPoint {
 pub(crate) struct PackedHit {
     /// Traced triangle, or number among the receiver's near points; see the bits.
     source: u32,
-    /// Barycentrics of the second and third corner, in units of 1/65535.
-    pub(crate) barycentrics: [u16; 2],
+    /// Barycentrics of the second and third corner.
+    pub(crate) barycentrics: [f32; 2],
     /// Weight times albedo, RGB.
     pub(crate) reflected: [f32; 3],
 }
@@ -59,7 +59,7 @@ pub(crate) fn packed(hit: &Hit, reflected: Vec3, near: &[NearPoint]) -> PackedHi
     let found = near.binary_search_by_key(&(hit.triangle, hit.front), |point| (point.triangle, point.front));
     PackedHit {
         source: found.map_or(hit.triangle | side, |index| index as u32 | NEAR),
-        barycentrics: [quantised(hit.u), quantised(hit.v)],
+        barycentrics: [hit.u, hit.v],
         reflected: reflected.to_array(),
     }
 }
@@ -85,8 +85,4 @@ pub(crate) fn near_points(world: &World<'_>, hits: &[(Hit, Vec3)], worth: f32) -
         (share > worth).then_some(NearPoint { triangle: hit.triangle, front: hit.front, barycentrics })
     };
     groups.filter_map(middle).collect()
-}
-
-fn quantised(x: f32) -> u16 {
-    (x.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
 }

@@ -31,6 +31,7 @@ mod refine;
 mod repair;
 mod rows;
 mod sample;
+mod senders;
 pub mod settings;
 mod split;
 mod survey;

@@ -2,9 +2,10 @@
 
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer, Worker};
-use crate::hit::{PackedHit, Source};
 use crate::progress::{Progress, Stage};
-use crate::receivers::{NONE, Receivers, morton_order};
+use crate::receivers::{Receivers, morton_order};
+use crate::senders::{Sender, Senders, fill_row};
+use crate::world::World;
 use crate::{Error, ProgressFn};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -58,35 +59,37 @@ impl<'a> Monitor<'a> {
     }
 }
 
-/// Receivers that are worked on together, with what they see where that is kept.
+/// Receivers that are worked on together, with those that send light to them where that is kept.
 pub(crate) struct Chunk {
     ids: Vec<u32>,
-    seen: Option<SeenSurfaces>,
+    senders: Option<Senders>,
 }
 
 impl Chunk {
     /// Receivers with what they were found to see.
-    pub(crate) fn of(ids: Vec<u32>, results: &[Gathered]) -> Self {
-        Self { ids, seen: Some(SeenSurfaces::of(results)) }
+    pub(crate) fn of(world: &World<'_>, ids: Vec<u32>, results: &[Gathered]) -> Self {
+        Self { ids, senders: Some(Senders::of(world, results)) }
     }
-}
 
-/// The surfaces that the receivers of a chunk see.
-struct SeenSurfaces {
-    ends: Vec<u32>,
-    hits: Vec<PackedHit>,
+    /// Takes the memory of the senders from `room`, or forgets them where it does not suffice.
+    pub(crate) fn keep_within(&mut self, room: &mut u64) {
+        match room.checked_sub(self.senders.as_ref().map_or(0, Senders::bytes)) {
+            Some(rest) => *room = rest,
+            None => self.senders = None,
+        }
+    }
 }
 
 /// What the first pass hands on, receiver by receiver.
 pub(crate) type Sink<'s> = dyn FnMut(u32, &Gathered) + 's;
 
-/// Gathers for the given receivers; `keep` says whether what they see is kept for the bounces.
+/// Gathers for the given receivers; what they see is kept for the bounces while `room`, in bytes, lasts.
 pub(crate) fn gather_pass(
     gatherer: &Gatherer<'_>,
     receivers: &Receivers,
     ids: Vec<u32>,
     stage: Stage,
-    keep: bool,
+    room: &mut u64,
     monitor: &Monitor<'_>,
     sink: &mut Sink<'_>,
 ) -> Result<Vec<Chunk>, Error> {
@@ -95,7 +98,8 @@ pub(crate) fn gather_pass(
     monitor.begin(stage, total);
     let mut chunks = Vec::new();
     for block in order.chunks(gatherer.receivers_per_block().next_multiple_of(CHUNK)) {
-        let gathered: Vec<(Vec<u32>, Vec<Gathered>)> = block
+        let keep = gatherer.hits && *room > 0;
+        let gathered: Vec<(Chunk, Vec<Gathered>)> = block
             .par_chunks(CHUNK)
             .map_init(Worker::new, |worker, ids| {
                 let mut results = Vec::with_capacity(ids.len());
@@ -107,36 +111,20 @@ pub(crate) fn gather_pass(
                     monitor.receiver_done(stage, total, result.visibility_rays + result.bounce_rays);
                     results.push(result);
                 }
-                (ids.to_vec(), results)
+                let senders = keep.then(|| Senders::of(gatherer.world, &results));
+                (Chunk { ids: ids.to_vec(), senders }, results)
             })
             .collect();
         monitor.check()?;
-        for (ids, results) in gathered {
-            for (&id, result) in ids.iter().zip(&results) {
+        for (mut chunk, results) in gathered {
+            for (&id, result) in chunk.ids.iter().zip(&results) {
                 sink(id, result);
             }
-            let seen = keep.then(|| SeenSurfaces::of(&results));
-            chunks.push(Chunk { ids, seen });
+            chunk.keep_within(room);
+            chunks.push(chunk);
         }
     }
     Ok(chunks)
-}
-
-impl SeenSurfaces {
-    fn of(results: &[Gathered]) -> Self {
-        let mut seen = Self { ends: Vec::with_capacity(results.len()), hits: Vec::new() };
-        seen.hits.reserve_exact(results.iter().map(|r| r.hits.len()).sum());
-        for result in results {
-            seen.hits.extend_from_slice(&result.hits);
-            seen.ends.push(seen.hits.len() as u32);
-        }
-        seen
-    }
-
-    fn of_receiver(&self, k: usize) -> &[PackedHit] {
-        let start = if k == 0 { 0 } else { self.ends[k - 1] as usize };
-        &self.hits[start..self.ends[k] as usize]
-    }
 }
 
 /// One bounce, \[G\] eq. (11): every receiver sums what the surfaces that it sees send on of the bounce before.
@@ -161,13 +149,15 @@ pub(crate) fn bounce_pass(
                         break;
                     }
                     let mut rays = 0;
-                    match &chunk.seen {
-                        Some(seen) => add_reflected(gatherer, receivers, id, seen.of_receiver(k), last, row),
+                    match &chunk.senders {
+                        Some(senders) => add_reflected(receivers, id, senders.row(k), last, row),
                         None => {
                             // Too much to keep: what the receiver sees is found again.
                             let again = gatherer.gather(&receivers.list[id as usize], id, worker);
                             rays = again.visibility_rays + again.bounce_rays;
-                            add_reflected(gatherer, receivers, id, &again.hits, last, row);
+                            let mut found = Vec::new();
+                            fill_row(gatherer.world, &again.hits, &mut found);
+                            add_reflected(receivers, id, &found, last, row);
                         }
                     }
                     monitor.receiver_done(stage, total, rays);
@@ -185,40 +175,16 @@ pub(crate) fn bounce_pass(
     Ok(next)
 }
 
-/// Adds albedo times transfer of every surface seen: of near points their own, else interpolated.
-fn add_reflected(
-    gatherer: &Gatherer<'_>,
-    receivers: &Receivers,
-    id: u32,
-    hits: &[PackedHit],
-    last: &Field,
-    row: &mut [f32],
-) {
-    for hit in hits {
-        match hit.source() {
-            Source::Near(index) => {
-                add_scaled(row, last.row(receivers.near_of[id as usize] + index), hit.reflected, 1.0, last.channels);
+/// Adds what every sender of a receiver sends on: albedo times its transfer, times its share.
+fn add_reflected(receivers: &Receivers, id: u32, senders: &[Sender], last: &Field, row: &mut [f32]) {
+    let stride = last.row_len() / last.channels;
+    for sender in senders {
+        let from = last.row(sender.resolve(receivers, id));
+        let channels = row.chunks_exact_mut(stride).zip(from.chunks_exact(stride));
+        for ((out, from), weight) in channels.zip(sender.weight) {
+            for (o, f) in out.iter_mut().zip(from) {
+                *o += weight * f;
             }
-            Source::Triangle(triangle) => {
-                let corners = gatherer.world.corners[triangle as usize];
-                let [u, v] = hit.barycentrics.map(|b| f32::from(b) / 65535.0);
-                for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
-                    let back = if hit.is_back() { receivers.back_of[corner as usize] } else { NONE };
-                    let from = if back == NONE { corner } else { back };
-                    add_scaled(row, last.row(from), hit.reflected, share, last.channels);
-                }
-            }
-        }
-    }
-}
-
-/// Adds a row times a factor per channel.
-fn add_scaled(row: &mut [f32], from: &[f32], reflected: [f32; 3], share: f32, channels: usize) {
-    let stride = row.len() / channels;
-    for (c, (out, from)) in row.chunks_exact_mut(stride).zip(from.chunks_exact(stride)).enumerate() {
-        let factor = share * reflected[c];
-        for (o, f) in out.iter_mut().zip(from) {
-            *o += factor * f;
         }
     }
 }

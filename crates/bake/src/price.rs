@@ -93,7 +93,8 @@ fn try_out(
             receivers.add_near(id, one.near.iter().map(|point| world.receiver_at(point)));
         }
         let receivers = &receivers;
-        let chunks: Vec<Chunk> = runs.iter().zip(&seen).map(|(ids, seen)| Chunk::of(ids.clone(), seen)).collect();
+        let chunks: Vec<Chunk> =
+            runs.iter().zip(&seen).map(|(ids, seen)| Chunk::of(world, ids.clone(), seen)).collect();
         let last = Field::zeros(receivers.list.len(), bands.coefficients(), plan.channels as usize);
         let start = now();
         let monitor = Monitor::new(&|_| ControlFlow::Continue(()));

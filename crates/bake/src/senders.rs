@@ -1,0 +1,108 @@
+//! Who sends light on to each receiver of a chunk: rows of a sparse matrix, kept from the first pass for the bounces.
+
+use crate::gather::Gathered;
+use crate::hit::{PackedHit, Source};
+use crate::receivers::{NONE, Receivers};
+use crate::world::World;
+
+/// One entry of a row: a receiver, and the share of what it sends that arrives, RGB.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sender {
+    /// A receiver, or a number among the near points of the row's receiver; see the bits.
+    key: u32,
+    pub(crate) weight: [f32; 3],
+}
+
+/// Bit of [`Sender::key`] for the back of a receiver, where it has one.
+const BACK: u32 = 1 << 31;
+/// Bit of [`Sender::key`] for a near point.
+const NEAR: u32 = 1 << 30;
+
+impl Sender {
+    /// The receiver that sends to `receiver`; known once the backs and near points are.
+    pub(crate) fn resolve(&self, receivers: &Receivers, receiver: u32) -> u32 {
+        let number = self.key & !(BACK | NEAR);
+        if self.key & NEAR != 0 {
+            return receivers.near_of[receiver as usize] + number;
+        }
+        let back = if self.key & BACK == 0 { NONE } else { receivers.back_of[number as usize] };
+        if back == NONE { number } else { back }
+    }
+}
+
+/// The rows of the receivers of a chunk.
+#[derive(Debug, Default)]
+pub(crate) struct Senders {
+    ends: Vec<u32>,
+    entries: Vec<Sender>,
+}
+
+impl Senders {
+    /// Rows of what receivers were found to see.
+    pub(crate) fn of(world: &World<'_>, results: &[Gathered]) -> Self {
+        let mut senders = Self { ends: Vec::with_capacity(results.len()), entries: Vec::new() };
+        let mut row = Vec::new();
+        for result in results {
+            fill_row(world, &result.hits, &mut row);
+            senders.entries.extend_from_slice(&row);
+            senders.ends.push(senders.entries.len() as u32);
+        }
+        senders.entries.shrink_to_fit();
+        senders
+    }
+
+    /// The row of the k-th receiver.
+    pub(crate) fn row(&self, k: usize) -> &[Sender] {
+        let start = if k == 0 { 0 } else { self.ends[k - 1] as usize };
+        &self.entries[start..self.ends[k] as usize]
+    }
+
+    /// Memory that the rows take.
+    pub(crate) fn bytes(&self) -> u64 {
+        (self.entries.len() * size_of::<Sender>() + self.ends.len() * size_of::<u32>()) as u64
+    }
+}
+
+/// Replaces `row` by the senders of a receiver, each once: what is hit between vertices comes from the corners of the triangle.
+pub(crate) fn fill_row(world: &World<'_>, hits: &[PackedHit], row: &mut Vec<Sender>) {
+    row.clear();
+    for hit in hits {
+        match hit.source() {
+            Source::Near(index) => row.push(Sender { key: index | NEAR, weight: hit.reflected }),
+            Source::Triangle(triangle) => {
+                let side = if hit.is_back() { BACK } else { 0 };
+                let [u, v] = hit.barycentrics;
+                for (corner, share) in world.corners[triangle as usize].into_iter().zip([1.0 - u - v, u, v]) {
+                    row.push(Sender { key: corner | side, weight: hit.reflected.map(|x| x * share) });
+                }
+            }
+        }
+    }
+    merge(row);
+}
+
+/// Sums the weights of entries of one key.
+fn merge(row: &mut Vec<Sender>) {
+    // Stable, so that the order of the sums is that of the rays.
+    row.sort_by_key(|sender| sender.key);
+    row.dedup_by(|next, kept| {
+        let same = next.key == kept.key;
+        if same {
+            kept.weight.iter_mut().zip(next.weight).for_each(|(sum, more)| *sum += more);
+        }
+        same
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BACK, Sender, merge};
+
+    #[test]
+    fn merging_keeps_the_sum_of_each_sender() {
+        let entry = |key, x: f32| Sender { key, weight: [x, 2.0 * x, 0.0] };
+        let mut row = vec![entry(7, 0.25), entry(3, 0.5), entry(7 | BACK, 1.0), entry(7, 0.125), entry(3, 0.5)];
+        merge(&mut row);
+        assert_eq!(row, [entry(3, 1.0), entry(7, 0.375), entry(7 | BACK, 1.0)]);
+    }
+}
