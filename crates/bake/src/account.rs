@@ -1,14 +1,14 @@
 //! What each effect took in a bake, and what the plan saved of it.
 
 use crate::facts::texture_bytes;
-use coeff_io::{Effect, EffectCost, Prt, Quality, TextureSlot};
+use coeff_io::{Effect, EffectCost, Prt, Quality, Sampler, TextureSlot};
 use scene::Scene;
 use std::collections::BTreeSet;
 
-/// Fewest rays of a receiver where an error is asked for, and fewest of its blockers that are looked up for bounces: the first
-/// step of the direction sets, and the least that a fully covered receiver takes.
-const LEAST_RAYS: u64 = 128;
-const LEAST_BLOCKERS: u64 = 64;
+/// Fewest rays of a receiver where an error is asked for, and fewest of its blockers that are looked up for bounces if it is
+/// covered fully: three looks at 512 directions in all, of which those after the first 128 are foreseen but for a third.
+const LEAST_RAYS: u64 = 250;
+const LEAST_BLOCKERS: u64 = 512;
 
 /// One entry per effect. Savings are against a bake that traces every receiver, looks up every blocker that it would for
 /// bounces, and stores three channels, all bands and every texture; of rays, at least those.
@@ -69,6 +69,8 @@ fn cost(scene: &Scene, prt: &Prt, traced: u64, effect: Effect) -> EffectCost {
 /// Rays that a receiver takes at least.
 fn least_rays(prt: &Prt) -> u64 {
     match prt.settings.quality {
+        // Half of the samples over the whole sphere lie below the horizon.
+        Quality::Rays(n) if prt.settings.sampler == Sampler::Stratified => u64::from(n) / 2,
         Quality::Rays(n) => u64::from(n),
         Quality::Error(_) => LEAST_RAYS,
     }
@@ -77,7 +79,7 @@ fn least_rays(prt: &Prt) -> u64 {
 /// Blocked rays whose surfaces a bake with bounces would at least look up.
 fn blockers(prt: &Prt) -> u64 {
     let most = match prt.settings.quality {
-        Quality::Rays(n) => f64::from(n),
+        Quality::Rays(_) => least_rays(prt) as f64,
         Quality::Error(_) => LEAST_BLOCKERS as f64,
     };
     prt.transfer.openness.iter().map(|&open| (most * f64::from(1.0 - open)) as u64).sum()

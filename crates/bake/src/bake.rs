@@ -30,7 +30,7 @@ pub(crate) const NEAR_WORTH: f32 = 8.0;
 /// Decides which effects a scene calls for; bakes nothing.
 ///
 /// # Errors
-/// As [`bake`]; no rays are traced but those of a small survey.
+/// As [`bake`]; no rays are traced but those of a small survey, and of the look for edges to halve.
 pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
@@ -105,13 +105,8 @@ impl<'a> Run<'a> {
         progress: ProgressFn<'a>,
     ) -> Result<Self, Error> {
         let (n, coefficients, channels) = (receivers.list.len(), gatherer.bands.coefficients(), plan.channels as usize);
-        let fields = if gatherer.hits { 3 } else { 1 };
-        let needed = fields * Field::bytes(n, coefficients, channels);
-        if needed > settings.memory {
-            return Err(Error::Memory { receivers: n, needed, allowed: settings.memory });
-        }
-        Ok(Self {
-            last: Field::zeros(n, coefficients, channels),
+        let mut run = Self {
+            last: Field::zeros(0, coefficients, channels),
             findings: vec![Finding::default(); n],
             errors: vec![0.0; n],
             achieved: Achieved::default(),
@@ -121,7 +116,10 @@ impl<'a> Run<'a> {
             receivers,
             settings,
             plan,
-        })
+        };
+        run.check_memory()?;
+        run.last.grow(n);
+        Ok(run)
     }
 
     fn finish(mut self, scene: &Scene) -> Result<Prt, Error> {
@@ -167,9 +165,18 @@ impl<'a> Run<'a> {
         self.first_pass(ids, Stage::Helpers)
     }
 
-    /// Bytes that the fields of the bounces take: the bounce before, the next, and the sum.
+    /// Bytes that the fields take: where there are bounces the one before, the next, and the sum.
     fn field_bytes(&self) -> u64 {
-        3 * Field::bytes(self.receivers.list.len(), self.last.coefficients, self.last.channels)
+        let fields = if self.gatherer.hits { 3 } else { 1 };
+        fields * Field::bytes(self.receivers.list.len(), self.last.coefficients, self.last.channels)
+    }
+
+    fn check_memory(&self) -> Result<(), Error> {
+        let (needed, allowed) = (self.field_bytes(), self.settings.memory);
+        if needed > allowed {
+            return Err(Error::Memory { receivers: self.receivers.list.len(), needed, allowed });
+        }
+        Ok(())
     }
 
     /// What the given receivers see directly; those that they want beside them are added to the list.
@@ -191,6 +198,7 @@ impl<'a> Run<'a> {
         let chunks =
             gather_pass(&self.gatherer, &self.receivers, ids, stage, &mut self.room, &self.monitor, &mut sink)?;
         wanted.add_to(&mut self.receivers, self.gatherer.world);
+        self.check_memory()?;
         let n = self.receivers.list.len();
         self.last.grow(n);
         self.findings.resize(n, Finding::default());

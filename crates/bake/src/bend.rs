@@ -16,7 +16,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use scene::{Mesh, Scene};
 use sh_math::Bands;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Bands of the look: what decides is where light can come from, not its detail.
 const BANDS: u32 = 3;
@@ -34,7 +34,7 @@ pub(crate) struct Bends<'a> {
     world: &'a World<'a>,
     bank: DirectionBank,
     bands: Bands,
-    /// Per mesh and vertex.
+    /// Per mesh and vertex; empty where nothing was looked at yet.
     vertices: Vec<Vec<Look>>,
     /// Per mesh: edges that were looked at, with what their middle sees.
     middles: Vec<BTreeMap<Edge, Look>>,
@@ -50,25 +50,14 @@ pub(crate) fn place(mesh: &Mesh, edge: Edge) -> Place {
 }
 
 impl<'a> Bends<'a> {
-    /// Looks from every vertex of a scene that lies on the surfaces of `world`.
-    pub(crate) fn new(world: &'a World<'a>, scene: &Scene, monitor: &Monitor<'_>) -> Result<Self, Error> {
+    /// For a scene that lies on the surfaces of `world`; looks at nothing yet.
+    pub(crate) fn new(world: &'a World<'a>, scene: &Scene) -> Self {
         let settings = Settings { bands: BANDS, quality: Quality::Rays(RAYS), ..settings::standard() };
         let bands = Bands::new(BANDS).expect("a constant in range");
         // The same for any seed that a bake is asked for: seeds are compared receiver by receiver.
         let bank = DirectionBank::new(bands, &settings);
-        let mut bends =
-            Self { world, bank, bands, vertices: Vec::new(), middles: vec![BTreeMap::new(); scene.meshes.len()] };
-        for (index, mesh) in scene.meshes.iter().enumerate() {
-            let faces = FaceSums::of(mesh);
-            let receiver = |v: u32| {
-                let v = v as usize;
-                Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v)).0
-            };
-            let list: Vec<Receiver> = (0..mesh.positions.len() as u32).map(receiver).collect();
-            let looks = bends.look(&list, two_sided(scene, index), monitor)?;
-            bends.vertices.push(looks);
-        }
-        Ok(bends)
+        let vertices = scene.meshes.iter().map(|mesh| vec![Look::new(); mesh.positions.len()]).collect();
+        Self { world, bank, bands, vertices, middles: vec![BTreeMap::new(); scene.meshes.len()] }
     }
 
     /// The edges longer than `shortest` along which transfer bends, looking only at those that are new.
@@ -81,6 +70,10 @@ impl<'a> Bends<'a> {
         let mut bent = HashSet::new();
         for (index, mesh) in scene.meshes.iter().enumerate() {
             let new = self.unseen(index, mesh, shortest);
+            if new.is_empty() {
+                continue;
+            }
+            self.look_from_ends(scene, index, new.iter().map(|(edge, _)| *edge), monitor)?;
             let receivers: Vec<Receiver> = new.iter().map(|(edge, sums)| sums.receiver(mesh, *edge)).collect();
             let looks = self.look(&receivers, two_sided(scene, index), monitor)?;
             for ((edge, _), look) in new.into_iter().zip(looks) {
@@ -98,9 +91,32 @@ impl<'a> Bends<'a> {
         let mut new: Vec<(u32, Edge)> = middles.into_iter().map(|(edge, vertex)| (vertex, edge)).collect();
         new.sort_unstable();
         for (_, edge) in new {
+            // Where there was none, one follows when it is asked for.
             let look = self.middles[mesh].remove(&edge).unwrap_or_default();
             self.vertices[mesh].push(look);
         }
+    }
+
+    /// Looks from the ends of edges where that was not done yet.
+    fn look_from_ends(
+        &mut self,
+        scene: &Scene,
+        index: usize,
+        edges: impl Iterator<Item = Edge>,
+        monitor: &Monitor<'_>,
+    ) -> Result<(), Error> {
+        let (mesh, looks) = (&scene.meshes[index], &self.vertices[index]);
+        let ends: BTreeSet<usize> = edges.flatten().map(|v| v as usize).filter(|&v| looks[v].is_empty()).collect();
+        let faces = FaceSums::of(mesh);
+        let receiver = |&v: &usize| {
+            Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v)).0
+        };
+        let receivers: Vec<Receiver> = ends.iter().map(receiver).collect();
+        let new = self.look(&receivers, two_sided(scene, index), monitor)?;
+        for (v, look) in ends.into_iter().zip(new) {
+            self.vertices[index][v] = look;
+        }
+        Ok(())
     }
 
     fn unseen(&self, index: usize, mesh: &Mesh, shortest: f32) -> Vec<(Edge, EdgeSums)> {
@@ -118,9 +134,6 @@ impl<'a> Bends<'a> {
     /// How far the look from the middle is from the mean of the looks from the ends; the larger of both sides.
     fn bend(&self, mesh: usize, [a, b]: Edge, middle: &Look) -> f32 {
         let (a, b) = (&self.vertices[mesh][a as usize], &self.vertices[mesh][b as usize]);
-        if a.len() != middle.len() || b.len() != middle.len() {
-            return f32::INFINITY;
-        }
         let away: Vec<f32> = middle.iter().zip(a.iter().zip(b)).map(|(m, (a, b))| m - 0.5 * (a + b)).collect();
         let norm = |side: &[f32]| side.iter().map(|x| x * x).sum::<f32>().sqrt();
         away.chunks_exact(self.bands.coefficients()).map(norm).fold(0.0, f32::max) / self.bank.open_norm as f32

@@ -82,6 +82,11 @@ impl DirectionBank {
         }
     }
 
+    /// Which part of the foreseen directions of a step a receiver tries.
+    pub(crate) fn part(&self, receiver: u32, step: usize) -> u32 {
+        (rng::hash(self.seed, 0xf07e, u64::from(receiver) << 8 | step as u64) >> 32) as u32
+    }
+
     /// The set of a receiver, and the cosine and sine of its turn about the normal.
     pub(crate) fn pick(&self, receiver: u32) -> (&DirectionSet, [f32; 2]) {
         let key = rng::hash(self.seed, 0xd1c, u64::from(receiver));

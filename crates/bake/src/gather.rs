@@ -60,7 +60,7 @@ pub(crate) struct Worker {
     choice: Choice,
     /// 1 where a direction is blocked, 0 where it is open.
     blocked: Vec<u8>,
-    /// What each direction of a step adds to the open sum.
+    /// What each direction adds to the open sum.
     open: Vec<f32>,
     wanted: Vec<u64>,
     nearest: Vec<Option<Hit>>,
@@ -141,19 +141,22 @@ impl Gatherer<'_> {
         index: u32,
         worker: &mut Worker,
     ) -> Seen {
-        let rule = self.rule(index);
+        let rule = self.rule(index, set);
         worker.directions.iter_mut().for_each(Vec::clear);
         worker.blocked.clear();
+        worker.open.clear();
         let mut progress = rule.start();
         let mut sums = vec![0.0f64; self.bands.coefficients()];
         let (mut open_weight, mut start) = (0.0, 0);
         let mut seen = Seen { local: Vec::new(), openness: 1.0, error: 0.0, step: 0, rays: 0 };
         for (number, step) in set.steps.iter().enumerate() {
             rotate_directions(set, frame, step.end, &mut worker.directions);
-            worker.choice.choose(&set.surroundings, start..step.end, index, &mut worker.blocked);
+            let turn = self.bank.part(index, number);
+            worker.choice.choose(&set.surroundings, start..step.end, turn, &mut worker.blocked);
             seen.rays += self.trace_step(origin, start..step.end, worker);
-            add_open(set, start..step.end, &worker.open, &mut sums);
-            open_weight += dot(&set.weights[start..step.end], &worker.open);
+            let open = &worker.open[start..];
+            add_open(set, start..step.end, open, &mut sums);
+            open_weight += dot(&set.weights[start..step.end], open);
             start = step.end;
             seen.step = number;
             seen.openness = open_weight / step.weight;
@@ -175,17 +178,18 @@ impl Gatherer<'_> {
 
     /// The stopping rule in the unit of the coefficients. What only lends light to others, through many rays each, may err
     /// by twice as much.
-    fn rule(&self, index: u32) -> Doubling {
+    fn rule(&self, index: u32, set: &DirectionSet) -> Doubling {
         let slack = if index < self.permanent { 1.0 } else { 2.0 };
         let tolerance = match self.quality {
             Quality::Error(asked) => slack * f64::from(asked) * self.bank.open_norm,
             Quality::Rays(_) => 0.0,
         };
-        Doubling { first: 0, last: u32::MAX, tolerance, confirmation: 2.0 }
+        let last = set.steps.last().map_or(0, |step| step.end as u32);
+        Doubling { first: 0, last, tolerance, confirmation: 2.0 }
     }
 
-    /// Half of what a single ray changes: no estimate is below it, since where all rays of two looks met the same the change is
-    /// zero, however many more it would take to find the gap.
+    /// Half of what a single ray would change if all counted the same: no estimate is below it, since where all rays of two looks
+    /// met the same the change is zero, however many more it would take to find the gap.
     fn resolution(&self, rays: u64) -> f64 {
         // The squares of the basis add up to n^2 / (4 pi) in every direction.
         0.5 * (self.bands.coefficients() as f64 / (4.0 * std::f64::consts::PI)).sqrt() / rays as f64
@@ -255,18 +259,20 @@ impl Gatherer<'_> {
 
     fn pack(&self, set: &DirectionSet, index: u32, worker: &Worker, out: &mut Gathered) {
         let found = || worker.nearest.iter().enumerate().filter_map(|(j, hit)| hit.map(|h| (j, h)));
-        let total: f64 = found().map(|(j, _)| f64::from(set.weights[j])).sum();
+        // A direction that was foreseen to be open and is not stands for its like that were not tried.
+        let weight = |j: usize| f64::from(set.weights[j]) * f64::from(1.0 - worker.open[j]);
+        let total: f64 = found().map(|(j, _)| weight(j)).sum();
         if total <= 0.0 {
             return;
         }
         let scale = (1.0 - f64::from(out.openness)) / total;
         let is_inside = |hit: &Hit| !hit.front && !self.world.double_sided(hit.triangle);
-        let inside: f64 = found().filter(|(_, hit)| is_inside(hit)).map(|(j, _)| f64::from(set.weights[j])).sum();
+        let inside: f64 = found().filter(|(_, hit)| is_inside(hit)).map(|(j, _)| weight(j)).sum();
         out.inside_share = (inside / total) as f32;
         if !self.hits {
             return;
         }
-        let weighed = found().map(|(j, hit)| (hit, (f64::from(set.weights[j]) * scale) as f32));
+        let weighed = found().map(|(j, hit)| (hit, (weight(j) * scale) as f32));
         let weighed: Vec<(Hit, Vec3)> =
             weighed.map(|(hit, weight)| (hit, self.world.albedo(hit.triangle, hit.u, hit.v) * weight)).collect();
         if index < self.permanent && !crate::repair::is_inside(out.openness, out.inside_share) {

@@ -42,5 +42,5 @@ pub use error::Error;
 pub use price::{Price, price};
 pub use progress::{Progress, Stage};
 pub use receivers::{Receiver, Receivers};
-pub use refine::refine;
+pub use refine::{refine, refine_watched};
 pub use sample::{Sampled, sample};

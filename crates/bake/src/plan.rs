@@ -24,8 +24,7 @@ pub(crate) struct Prepared<'a> {
 pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings) -> Result<Prepared<'a>, Error> {
     let mut receivers = Receivers::of(scene);
     let mut facts = Facts::of_materials(scene, settings);
-    let holes = |m: usize| facts.materials[m].masked && (is_forced(settings) || facts.materials[m].holes > 0.0);
-    let mut world = World::with(scene, &|m| facts.materials[m].blocks, &|m| allows_masks(settings) && holes(m))?;
+    let mut world = world(scene, &facts, settings)?;
     facts.add_receivers(scene, &world, &receivers);
     world.trace_all = is_forced(settings);
     let specular = allowed(settings, Effect::Specular);
@@ -44,6 +43,13 @@ pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings) -> Result<Prepa
     let survey = survey(&world, &receivers.list, &traced, settings)?;
     let plan = decide(&facts, survey, traced.len() as u64, settings);
     Ok(Prepared { world, receivers, plan, traced })
+}
+
+/// The scene as rays meet it under the settings.
+pub(crate) fn world<'a>(scene: &'a Scene, facts: &Facts, settings: &Settings) -> Result<World<'a>, Error> {
+    let of = &facts.materials;
+    let holes = |m: usize| of[m].masked && (is_forced(settings) || of[m].holes > 0.0);
+    World::new(scene, &|m| of[m].blocks, &|m| allowed(settings, Effect::Masks) && holes(m))
 }
 
 /// What is simulated, before it is put into words.
@@ -157,11 +163,6 @@ pub(crate) fn tolerance(quality: Quality) -> f32 {
         Quality::Error(e) => e / 4.0,
         Quality::Rays(_) => 2.5e-3,
     }
-}
-
-/// Whether rays may pass through the empty parts of alpha masks.
-pub(crate) fn allows_masks(settings: &Settings) -> bool {
-    allowed(settings, Effect::Masks)
 }
 
 /// Whether a plan simulates an effect.

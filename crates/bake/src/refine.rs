@@ -1,12 +1,14 @@
 //! Splits large triangles, since a vertex is all that can hold a shadow.
 
 use crate::bend::{Bends, place};
+use crate::facts::Facts;
 use crate::passes::Monitor;
+use crate::plan::{allowed, world};
 use crate::receivers::Receivers;
 use crate::split::{Edge, MOST_TRIANGLES, edges, halve, length};
 use crate::world::World;
 use crate::{Error, ProgressFn, settings};
-use coeff_io::{Refine, Settings};
+use coeff_io::{Effect, Refine, Settings};
 use rayon::prelude::*;
 use scene::{Mesh, Scene};
 use std::borrow::Cow;
@@ -16,14 +18,14 @@ use std::ops::ControlFlow;
 const LEAST_TRIANGLES: f64 = 20_000.0;
 /// Rounds of halving; each halves the longest edges, so that these reach 1/4096 of the first.
 const ROUNDS: usize = 12;
-/// Rounds of halving where transfer bends: edges reach an eighth of the even ones.
+/// Rounds of halving where transfer bends: edges down to an eighth of the even ones are halved.
 const BEND_ROUNDS: i32 = 3;
 
 /// The scene with every edge at most as long as the settings say; borrowed where nothing is to be split.
 ///
 /// [`Refine::Auto`] takes the edge that triangles would have if as many as the scene has (or 20,000 where it has fewer) lay evenly over
 /// its surfaces, then looks where transfer bends between vertices and halves those edges up to three times; it leaves a scene alone in
-/// which nothing casts a shadow. Edges are split for what they are, wherever they occur, so neighbours stay joined, across meshes too.
+/// which nothing casts a shadow or shadows are not asked for. Edges are split for what they are, wherever they occur, so neighbours stay joined, across meshes too.
 /// The surface stays the same; vertices of a mesh keep their indices, new ones follow.
 ///
 /// # Errors
@@ -33,7 +35,10 @@ pub fn refine<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene
 }
 
 /// [`refine`] that reports progress and can be cancelled.
-pub(crate) fn refine_watched<'a>(
+///
+/// # Errors
+/// As [`refine`], and [`Error::Cancelled`].
+pub fn refine_watched<'a>(
     scene: &'a Scene,
     settings: &Settings,
     progress: ProgressFn<'_>,
@@ -43,7 +48,10 @@ pub(crate) fn refine_watched<'a>(
         Refine::Off => Ok(Cow::Borrowed(scene)),
         Refine::Edge(longest) => evenly(scene, longest),
         Refine::Auto => {
-            let world = World::new(scene, crate::plan::allows_masks(settings))?;
+            if !allowed(settings, Effect::Visibility) {
+                return Ok(Cow::Borrowed(scene));
+            }
+            let world = world(scene, &Facts::of_materials(scene, settings), settings)?;
             if !has_shadows(scene, &world) {
                 return Ok(Cow::Borrowed(scene));
             }
@@ -99,7 +107,7 @@ fn at_bends<'a>(
     world: &World<'_>,
     monitor: &Monitor<'_>,
 ) -> Result<Cow<'a, Scene>, Error> {
-    let mut bends = Bends::new(world, &scene, monitor)?;
+    let mut bends = Bends::new(world, &scene);
     for round in 0..BEND_ROUNDS {
         let shortest = longest * 0.5f32.powi(round + 1);
         let bent = bends.find(&scene, shortest, monitor)?;

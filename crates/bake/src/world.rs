@@ -9,6 +9,8 @@ use scene::{AlphaMode, Scene};
 
 /// Bits 30 and 31 of a packed triangle say what was hit of it.
 const MAX_TRIANGLES: usize = (1 << 30) - 1;
+/// Vertices that fit beside the bits of senders.
+const MAX_VERTICES: usize = (1 << 30) - 1;
 
 /// All surfaces that block light, flattened.
 pub(crate) struct World<'a> {
@@ -25,15 +27,9 @@ pub(crate) struct World<'a> {
 }
 
 impl<'a> World<'a> {
-    /// Flattens the scene and builds the tree; `masks` says whether alpha masks with holes let rays pass.
-    pub(crate) fn new(scene: &'a Scene, masks: bool) -> Result<Self, Error> {
-        let holes = |m: usize| masks && crate::material::hole_share(scene, m) > 0.0;
-        let masked: Vec<bool> = (0..scene.materials.len()).map(holes).collect();
-        Self::with(scene, &|m| scene.materials[m].blocks_rays(), &|m| masked[m])
-    }
-
-    /// The same; `blocks` says at which materials rays stop, `tested` of which the alpha mask is tested.
-    pub(crate) fn with(
+    /// Flattens the scene and builds the tree; `blocks` says at which materials rays stop, `tested` of which the alpha mask is
+    /// tested.
+    pub(crate) fn new(
         scene: &'a Scene,
         blocks: &dyn Fn(usize) -> bool,
         tested: &dyn Fn(usize) -> bool,
@@ -51,7 +47,7 @@ impl<'a> World<'a> {
         for (m, mesh) in scene.meshes.iter().enumerate() {
             let first = positions.len() as u32;
             positions.extend_from_slice(&mesh.positions);
-            check_count(scene, "vertices", positions.len(), u32::MAX as usize / 2)?;
+            check_count(scene, "vertices", positions.len(), MAX_VERTICES)?;
             if !blocks(mesh.material as usize) {
                 continue;
             }

@@ -31,6 +31,23 @@ fn distance(a: &Sampled, b: &Sampled) -> f64 {
     squares.sum::<f64>().sqrt() / open_norm()
 }
 
+/// Receivers that took all directions that there are tell the error that they were left with.
+#[test]
+fn what_is_spent_is_told() {
+    let scene = scene::builtin("half-blocked-plane").expect("a builtin");
+    let asked = 1e-4;
+    let spent = pairs(&scene, asked);
+    let least = spent.iter().map(|pair| pair[1]).fold(f64::INFINITY, f64::min);
+    assert!(least > 0.0, "no error is zero where rays decide");
+    assert!(spent.iter().any(|pair| pair[1] > f64::from(asked)), "some receivers cannot reach {asked}");
+    // The truth has but twice their rays, and an error of its own.
+    let share = exceeding(&spent, 2.5);
+    assert!(share <= 0.05, "{share} of the errors exceed their estimates");
+    // Twin: told as zero, all would.
+    let zero: Vec<[f64; 2]> = spent.iter().map(|pair| [pair[0], 0.0]).collect();
+    assert!(exceeding(&zero, 2.5) > 0.9, "the check sees estimates of zero");
+}
+
 /// Pairs of true and estimated error over receivers and seeds.
 fn pairs(scene: &Scene, asked: f32) -> Vec<[f64; 2]> {
     let truth = sample(scene, &settings(Quality::Rays(TRUTH), 1000), RECEIVERS).expect("the scene bakes");

@@ -111,10 +111,10 @@ pub struct Achieved {
     pub effects: Vec<EffectCost>,
 }
 
-/// Receivers that were found broken and mended from their neighbours.
+/// Receivers that were found broken and mended: moved to where their surface comes out of the body, or from their neighbours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Default)]
 pub struct RepairCounts {
-    /// Inside geometry: almost all that they see are the backs of surfaces.
+    /// Inside geometry: less than half open, and more than half of what they see are the backs of surfaces.
     pub inside: u32,
     /// With a normal that is no direction or points behind the surface: it is replaced by that of the faces, or, where these
     /// have none, the neighbours' values are taken.

@@ -226,6 +226,12 @@ impl Check<'_> {
             crate::Quality::Rays(rays) => rays > 0,
         };
         self.header(aim, || "the settings ask for no rays or no error".into())?;
+        self.header(settings.time.iter().all(is_amount), || "the time of the settings is none".into())?;
+        let edge = match settings.refine {
+            crate::Refine::Edge(longest) => longest.is_finite() && longest > 0.0,
+            crate::Refine::Auto | crate::Refine::Off => true,
+        };
+        self.header(edge, || "the settings split triangles at an edge that is no length".into())?;
         self.header(settings.light.iter().all(is_amount), || "the light of the settings has a norm that is none".into())
     }
 

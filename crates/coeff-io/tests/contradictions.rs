@@ -2,7 +2,7 @@
 
 mod sample;
 
-use coeff_io::{BandChoice, Error, Prt, Quality};
+use coeff_io::{BandChoice, Error, Prt, Quality, Refine};
 use sample::sample;
 
 /// A name and a change that breaks one rule of `docs/format.md`.
@@ -58,6 +58,8 @@ const BREAKS: &[Break] = &[
     ("settings of fewer bands", |p| p.settings.bands = 1),
     ("settings of exactly other bands", |p| p.settings.band_choice = BandChoice::Exactly),
     ("a light that is no number", |p| p.settings.light[0] = f32::NAN),
+    ("a time that is no number", |p| p.settings.time = Some(f32::NAN)),
+    ("an edge of no length", |p| p.settings.refine = Refine::Edge(0.0)),
     ("a worst receiver that is not there", |p| p.achieved.worst_receiver = 7),
     ("an error that is no number", |p| p.achieved.error[1] = f32::NAN),
     ("an error to reach that is no number", |p| p.settings.quality = Quality::Error(f32::NAN)),

@@ -103,7 +103,7 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         let (inside, normals) = (repairs.inside, repairs.bad_normals);
         let left = repairs.unrepaired;
         console.notice(&format!(
-            "warning: {inside} vertices inside geometry, {normals} with bad normals; repaired from neighbours but for {left}"
+            "warning: {inside} vertices inside geometry, {normals} with bad normals; moved out or repaired from neighbours but for {left}"
         ));
     }
     console.notice(&format!("wrote {}", options.output.display()));

@@ -15,7 +15,8 @@ pub(crate) struct BakeOptions {
     /// Fixed number of rays per receiver.
     #[arg(long, value_name = "N", conflicts_with = "error")]
     rays: Option<u32>,
-    /// Relative error of each receiver's transfer to reach (0.01 where neither is given).
+    /// Relative error of each receiver's transfer to reach (0.01 where neither is given); a receiver takes 16,384 directions at
+    /// most, and the file says what was reached.
     #[arg(long, value_name = "E")]
     error: Option<f32>,
     /// The least error within a time: seconds, or 30s, 5m, 2h. Bakes from coarse to fine; the file is there after the first, coarse
@@ -26,7 +27,7 @@ pub(crate) struct BakeOptions {
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = bounces)]
     bounces: Bounces,
     /// Splits large triangles, whose vertices alone could not hold shadows: auto (as evenly as the scene's own triangles
-    /// allow), off, or the longest edge in metres.
+    /// allow, and finer where a quick look finds that shadows bend between vertices), off, or the longest edge in metres.
     #[arg(long, value_name = "auto|off|METRES", default_value = "auto", value_parser = refine)]
     refine: Refine,
     /// Effects that may be simulated: auto for those that the scene calls for, all, none, or a list of visibility,
@@ -95,6 +96,11 @@ impl BakeOptions {
     /// Bands that are baked at most.
     pub(crate) fn most_bands(&self) -> u32 {
         self.bands.count
+    }
+
+    /// Whether the bake is told how long it may take.
+    pub(crate) fn is_timed(&self) -> bool {
+        self.time.is_some()
     }
 
     /// The settings that these options stand for, with the norms of the bands of a light where one is known.
@@ -171,6 +177,9 @@ fn effect(name: &str) -> Result<Effect, String> {
     }
 }
 
+/// Most seconds that may be asked for: far beyond any bake, and small enough to count with.
+const MOST_SECONDS: f32 = 30.0 * 24.0 * 3600.0;
+
 fn seconds(text: &str) -> Result<f32, String> {
     let (digits, unit) = match text.char_indices().next_back() {
         Some((at, 's')) => (&text[..at], 1.0),
@@ -181,7 +190,11 @@ fn seconds(text: &str) -> Result<f32, String> {
     let wrong = || "give a time above 0, such as 90, 90s, 5m or 2h".to_owned();
     let number: f32 = digits.parse().map_err(|_| wrong())?;
     let seconds = number * unit;
-    if seconds > 0.0 && seconds.is_finite() { Ok(seconds) } else { Err(wrong()) }
+    match seconds {
+        s if s > MOST_SECONDS => Err("give at most 30 days (720h)".into()),
+        s if s > 0.0 => Ok(s),
+        _ => Err(wrong()),
+    }
 }
 
 /// Parses a number of bytes with K, M or G.
@@ -207,6 +220,7 @@ mod tests {
         assert!(bytes("G").is_err() && bytes("-1").is_err() && bytes("99999999999G").is_err());
         assert_eq!(seconds("90"), Ok(90.0));
         assert_eq!(seconds("1.5m"), Ok(90.0));
+        assert!(seconds("1e30h").is_err() && seconds("1e19").is_err() && seconds("NaN").is_err());
         assert!(seconds("0").is_err() && seconds("-1s").is_err() && seconds("m").is_err() && seconds("infh").is_err());
         assert_eq!(bounces("2"), Ok(Bounces::Fixed(2)));
         assert!(bounces("many").is_err());

@@ -4,7 +4,7 @@ use crate::bake::{fault, watched};
 use crate::console::Console;
 use crate::interrupt;
 use anyhow::Result;
-use coeff_io::{Prt, Quality, Settings};
+use coeff_io::{Prt, Quality, Refine, Settings};
 use scene::Scene;
 use std::time::{Duration, Instant};
 
@@ -44,9 +44,11 @@ pub(crate) fn bake(
     let mut rungs: Vec<Rung> = Vec::new();
     let mut best: Option<Prt> = None;
     let mut error = COARSEST;
+    // The split of the triangles does not depend on the error.
+    let scene = &*bake::refine_watched(scene, settings, &watched(&console.progress(), None)).map_err(fault)?;
     loop {
         let start = Instant::now();
-        let wanted = Settings { quality: Quality::Error(error), ..settings.clone() };
+        let wanted = Settings { quality: Quality::Error(error), refine: Refine::Off, ..settings.clone() };
         let limit = best.is_some().then_some(deadline);
         let result = bake::bake(scene, &wanted, &watched(&console.progress(), limit));
         match (result, best) {
@@ -56,10 +58,16 @@ pub(crate) fn bake(
                 return Ok(best);
             }
             (result, _) => {
-                let prt = result.map_err(fault)?;
+                let mut prt = result.map_err(fault)?;
+                prt.settings.refine = settings.refine;
                 write(&prt)?;
                 rungs.push(Rung { error, seconds: start.elapsed().as_secs_f64() });
-                console.notice(&format!("error {error:.4} reached after {:.1} s", began.elapsed().as_secs_f64()));
+                let reached = prt.achieved.error[1];
+                let seconds = began.elapsed().as_secs_f64();
+                console.notice(&format!("after {seconds:.1} s: 95% of the errors below {reached:.4}"));
+                if reached == 0.0 || spent(&prt, error) {
+                    return Ok(prt);
+                }
                 best = Some(prt);
             }
         }
@@ -70,6 +78,11 @@ pub(crate) fn bake(
             (None, None) => unreachable!("a result was just kept"),
         }
     }
+}
+
+/// Whether most receivers took all directions that there are: a smaller error would change nothing.
+fn spent(prt: &Prt, asked: f32) -> bool {
+    prt.achieved.error[0] > asked
 }
 
 /// The error to ask for next with so many seconds left; none where that would be hardly smaller.
@@ -93,14 +106,17 @@ fn next(rungs: &[Rung], left: f64) -> Option<f32> {
 mod tests {
     use super::*;
 
+    /// A rule that says which error follows.
+    type Rule = fn(&[Rung], f64) -> Option<f32>;
+
     /// Plays bakes whose time follows a power of the error, and returns the errors and the time that was used.
-    fn play(allowed: f64, exponent: f64, first: f64) -> (Vec<f32>, f64) {
+    fn play(rule: Rule, allowed: f64, exponent: f64, first: f64) -> (Vec<f32>, f64) {
         let seconds = |error: f32| first * f64::from(COARSEST / error).powf(exponent);
         let (mut rungs, mut used, mut error) = (Vec::new(), 0.0, COARSEST);
         loop {
             used += seconds(error);
             rungs.push(Rung { error, seconds: seconds(error) });
-            match next(&rungs, allowed - used) {
+            match rule(&rungs, allowed - used) {
                 Some(finer) => error = finer,
                 None => return (rungs.iter().map(|r| r.error).collect(), used),
             }
@@ -110,7 +126,7 @@ mod tests {
     #[test]
     fn time_is_used_and_kept() {
         for exponent in [1.1, 1.4, 1.9] {
-            let (errors, used) = play(100.0, exponent, 1.0);
+            let (errors, used) = play(next, 100.0, exponent, 1.0);
             assert!(errors.windows(2).all(|w| w[1] <= WORTH * w[0]), "from coarse to fine: {errors:?}");
             assert!(used <= 100.0, "no longer than allowed: {used}");
             // One bake for all the time would reach 100^(-1/exponent) of the first error; the ladder loses little of it.
@@ -123,9 +139,9 @@ mod tests {
     /// A ladder that does not look at its clock overruns: the check above would see it.
     #[test]
     fn time_is_used_and_kept_can_fail() {
-        let blind = |error: f32| f64::from(COARSEST / error).powf(1.9);
-        let used: f64 = (0..5).map(|k| blind(COARSEST / STEP.powi(k))).sum();
-        assert!(used > 100.0, "five blind steps take {used}");
+        let blind: Rule = |rungs, left| (left > 0.0).then(|| rungs.last().expect("one at least").error / STEP);
+        let (errors, used) = play(blind, 100.0, 1.9, 1.0);
+        assert!(used > 100.0, "{errors:?} take {used}");
     }
 
     #[test]

@@ -41,7 +41,7 @@ fn settings() -> Settings {
         band_choice: BandChoice::Needed,
         light: vec![1.5, 0.25],
         quality: Quality::Error(0.01),
-        time: None,
+        time: Some(90.0),
         bounces: Bounces::Fixed(2),
         effects: Effects::Only(vec![Effect::Visibility, Effect::Interreflection, Effect::Color]),
         sampler: Sampler::OwenSobol,
