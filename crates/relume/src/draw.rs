@@ -38,7 +38,8 @@ pub(crate) enum Window {
 }
 
 impl Window {
-    fn apply(self, light: &sh_math::Rgb) -> sh_math::Rgb {
+    /// The light as it is shown.
+    pub(crate) fn apply(self, light: &sh_math::Rgb) -> sh_math::Rgb {
         match self {
             Self::None => light.clone(),
             Self::Auto => light.windowed(&sh_math::window::automatic(light)),

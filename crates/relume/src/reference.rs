@@ -1,9 +1,11 @@
 //! `relume reference`: the ground truth, by path tracing.
 
 use crate::console::Console;
+use crate::draw::Window;
 use crate::lens::{self, Lens};
 use crate::picture::{self, DisplayOptions, Size, Target};
 use crate::source::{self, ProbeOptions, SceneOptions};
+use crate::usage::Usage;
 use crate::{interrupt, output, settings};
 use anyhow::{Context, Result, ensure};
 use coeff_io::Bounces;
@@ -17,6 +19,7 @@ Examples:
   relume reference builtin:cornell-box --probe builtin:sky -o truth.exr
   relume reference house.glb --probe kitchen.hdr --spp 1024 --size 480x270 -o truth.exr
   relume reference house.glb --probe kitchen.hdr --light bands:5 -o what-a-bake-should-give.exr
+  relume reference house.glb --probe sun.hdr --light bands:5 --window auto -o what-render-window-auto-should-give.exr
 
 `--light bands:N` lights the scene with what N bands hold of the probe: a bake of N bands should give the same picture,
 but for noise and for what lies between vertices.";
@@ -39,6 +42,9 @@ pub(crate) struct Options {
     /// The light: full, or what N bands hold of it.
     #[arg(long, value_name = "full|bands:N", default_value = "full", value_parser = light)]
     light: Truth,
+    /// What is done against ringing of the light of few bands, as `render` does it.
+    #[arg(long, value_enum, default_value_t = Window::None)]
+    window: Window,
     /// How often light may bounce: a number, or auto for until paths end by themselves.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = settings::bounces)]
     bounces: Bounces,
@@ -76,8 +82,11 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let camera = lens::of_scene(options.camera.as_ref(), &scene)?;
     let environment = options.probe.load(console)?;
     let light = match options.light {
+        Truth::Full if options.window != Window::None => {
+            return Err(Usage("--window is for the light of few bands: give --light bands:N too".into()).into());
+        }
         Truth::Full => Light::new(&environment),
-        Truth::Bands(bands) => band_limited(bands, &environment)?,
+        Truth::Bands(bands) => band_limited(bands, options.window, &environment)?,
     };
     let max_bounces = match options.bounces {
         Bounces::Auto => None,
@@ -105,9 +114,9 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     Ok(())
 }
 
-/// The light that `bands` bands hold; it may be negative in places. The view behind the scene stays as it is.
-fn band_limited(bands: Bands, environment: &Environment) -> Result<Light> {
-    let coefficients = sh_math::project(bands, environment.samples());
+/// The light that `bands` bands hold; without a window it may be negative in places. The view behind the scene stays as it is.
+fn band_limited(bands: Bands, window: Window, environment: &Environment) -> Result<Light> {
+    let coefficients = window.apply(&sh_math::project(bands, environment.samples()));
     let (width, height) = (LIGHT_WIDTH, LIGHT_WIDTH / 2);
     let pixel = |i: usize| {
         let phi = std::f64::consts::TAU * (((i % width) as f64 + 0.5) / width as f64 - 0.5);

@@ -194,6 +194,28 @@ fn the_reference_agrees_on_a_plane() {
     }
 }
 
+/// Under the same window, the path tracer's plane is as bright as the baked one; without it, it is not.
+#[test]
+fn the_reference_sees_the_same_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    succeed(folder, &["bake", "builtin:plane", "-o", "p.prt"]);
+    let common = ["--probe", "builtin:sky", "--camera", "0,2,0.5,0,0,0,60", "--size", "32x24"];
+    let mean = |file: &str| {
+        let (_, _, pixels) = probe_io::read_picture(&folder.join(file)).unwrap();
+        pixels.as_flattened().iter().map(|&v| f64::from(v)).sum::<f64>() / pixels.len() as f64
+    };
+    succeed(folder, &[&["render", "p.prt", "-o", "b.exr", "--window", "auto"], &common[..]].concat());
+    let baked = mean("b.exr");
+    for (window, same) in [("auto", true), ("none", false)] {
+        let traced =
+            ["reference", "builtin:plane", "-o", "r.exr", "--light", "bands:5", "--spp", "256", "--window", window];
+        succeed(folder, &[&traced[..], &common[..]].concat());
+        let difference = (mean("r.exr") / baked - 1.0).abs();
+        assert_eq!(difference < 0.02, same, "--window {window}: {difference}");
+    }
+}
+
 #[test]
 fn exports_have_the_shapes_that_they_promise() {
     let folder = tempfile::tempdir().unwrap();

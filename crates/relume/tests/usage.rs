@@ -61,6 +61,12 @@ fn wrong_usage_ends_with_2_and_a_reason() {
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--backend", "magic"], "magic"),
         (&["reference", "builtin:plane", "--probe", "builtin:sky", "-o", "a.exr", "--light", "some"], "bands:N"),
         (&["reference", "builtin:plane", "--probe", "builtin:sky", "-o", "a.exr", "--spp", "0"], "--spp"),
+        (
+            &["reference", "builtin:plane", "--probe", "builtin:sky", "-o", "a.exr", "--window", "auto"],
+            "--light bands:N",
+        ),
+        (&["plan", "builtin:plane", "--time", "5m"], "--error"),
+        (&["bake", "builtin:plane", "-o", "a.prt", "--time", "1e30h"], "30 days"),
         (&["light", "builtin:sky", "--bands", "1000", "-o", "a.npy"], "129"),
         (&["light", "builtin:nothing", "-o", "a.npy"], "sky"),
         (&["export", "a.prt", "--format", "fbx", "-o", "a"], "fbx"),
