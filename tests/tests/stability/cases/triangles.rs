@@ -1,7 +1,7 @@
 //! Triangles that are thin, flat, double, torn apart, alone or not there.
 
 use super::Case;
-use super::baking::{askew, fixed, grey, placed, quiet, radiance, values, white};
+use super::baking::{askew, fixed, grey, placed, quiet, radiance, shares, values, white};
 use super::case::{difference, worst};
 use super::published::{Start, escapes, open_share, random_direction};
 use bake::{Error, settings};
@@ -52,7 +52,7 @@ pub(crate) fn duplicated_vertices() -> Case {
         limit: 0.01,
         ours: || {
             let prt = quiet(&torn_bowl(), &fixed(1, 2048, 0));
-            worst(prt.transfer.openness.iter().map(|&share| (f64::from(share) - 0.5).abs()))
+            worst(shares(&prt).into_iter().map(|share| (share - 0.5).abs()))
         },
         naive_method: "triangles that share the vertex by its index do not count",
         naive: || worst_share(&torn_bowl().meshes, 0.5),
