@@ -108,7 +108,7 @@ fn raw(path: &Path) -> Probe {
 }
 
 fn darkness(probe: &Probe) -> f64 {
-    worst(probe.pixels.as_flattened().iter().map(|&value| f64::from((-value).max(0.0))))
+    worst(probe.pixels.as_flattened().iter().map(|&value| -f64::from(value)))
 }
 
 /// Layout, width and height.

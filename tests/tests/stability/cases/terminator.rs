@@ -80,9 +80,12 @@ fn dark_receivers(meshes: Vec<Mesh>, settings: &Settings) -> f64 {
     for sun in suns().into_iter().filter(|sun| sun.y > lowest) {
         let light = project(Bands::new(5).expect("in range"), [(sun.as_dvec3(), [std::f64::consts::PI; 3])]);
         for (value, normal) in radiance(&prt, &light).into_iter().zip(&prt.geometry.normals).take(own) {
-            if Vec3::from(*normal).dot(sun) > LIT {
+            // what is no number is lit and dark
+            let turned_away = Vec3::from(*normal).dot(sun) <= LIT;
+            if !turned_away {
                 lit += 1;
-                dark += u32::from(value < 0.01);
+                let bright = value >= 0.01;
+                dark += u32::from(!bright);
             }
         }
     }
