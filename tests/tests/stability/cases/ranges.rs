@@ -35,7 +35,7 @@ pub(crate) fn clipped_transfer() -> Case {
 pub(crate) fn grazing_light() -> Case {
     Case {
         title: "irradiance in the modified H-basis, lights at 0 to 90°, 8 bits",
-        bound: "error of a coefficient over the largest constant: half a step, 1/254 of the largest coefficient, which is 0.57 of that constant",
+        bound: "error of a coefficient over the largest constant: half a step, 1/510 of a range of at most twice the largest coefficient, which is 0.57 of that constant",
         limit: 0.57 / 254.0,
         ours: || grazing_error(|lights| Format::U8.round_trip(lights)),
         naive_method: "±0.75 of each light's constant",
