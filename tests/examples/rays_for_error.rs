@@ -2,6 +2,7 @@
 //! `rays_for_error [SCENE ...]`, after a city and foliage of its own; the last rows hold the receivers of all scenes together.
 //!
 //! Error: 95th percentile over receivers of |T - truth| against an open receiver's |T|; the truth has 65,536 rays and another seed.
+//! "≤": the least number of fixed rays looked at is there already; "more": the largest is not.
 
 #![expect(clippy::print_stdout, reason = "an example that prints a table")]
 
@@ -56,6 +57,9 @@ struct Curves {
 impl Curves {
     fn of(scene: &Scene) -> Result<Self, Box<dyn Error>> {
         let truth = look(scene, Sampler::OwenSobol, Quality::Rays(1 << 16), 1000)?;
+        if truth.is_empty() {
+            return Err(format!("{}: no receiver needs rays, so there is nothing to judge", scene.name).into());
+        }
         let judge = |sampler, quality| -> Result<Judged, bake::Error> {
             Ok(Judged::of(&look(scene, sampler, quality, 1)?, &truth))
         };
@@ -79,10 +83,8 @@ impl Curves {
     fn print(&self, name: &str) {
         for (asked, judged) in ASKED.into_iter().zip(&self.asked) {
             let [error, rays] = judged.summary();
-            let tell = |curve: &[Judged]| {
-                let n = rays_at(&curve.iter().map(Judged::summary).collect::<Vec<_>>(), error);
-                n.map_or(["more".into(), "-".into()], |n| [format!("{n:.0}"), format!("{:.1}", n / rays)])
-            };
+            let tell =
+                |curve: &[Judged]| rays_at(&curve.iter().map(Judged::summary).collect::<Vec<_>>(), error).cells(rays);
             let ([a, ra], [b, rb]) = (tell(&self.sobol), tell(&self.stratified));
             println!("| {name} | {asked} | {error:.4} | {rays:.0} | {a} | {ra} | {b} | {rb} |");
         }
@@ -95,11 +97,10 @@ struct Judged(Vec<[f64; 2]>);
 
 impl Judged {
     fn of(judged: &[Sampled], truth: &[Sampled]) -> Self {
-        let open = sh_math::Bands::new(bake::settings::standard().bands).map_or(1.0, |bands| {
-            let mut lobe = vec![0.0f32; bands.coefficients()];
-            sh_math::zonal::cosine_transfer(bands, Vec3::Z, &mut lobe);
-            norm(lobe.iter().copied())
-        });
+        let bands = sh_math::Bands::new(bake::settings::standard().bands).expect("the standard settings are in range");
+        let mut lobe = vec![0.0f32; bands.coefficients()];
+        sh_math::zonal::cosine_transfer(bands, Vec3::Z, &mut lobe);
+        let open = norm(lobe.iter().copied());
         let error = |a: &Sampled, b: &Sampled| norm(a.transfer.iter().zip(&b.transfer).map(|(x, y)| x - y)) / open;
         Self(judged.iter().zip(truth).map(|(a, b)| [error(a, b), a.rays as f64]).collect())
     }
@@ -120,11 +121,36 @@ fn norm(values: impl Iterator<Item = f32>) -> f64 {
     values.map(|x| f64::from(x).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Rays at which a curve of [error, rays] comes down to an error, between its points along a power law.
-fn rays_at(curve: &[[f64; 2]], error: f64) -> Option<f64> {
-    let step = curve.windows(2).find(|w| w[0][0] > error && w[1][0] <= error)?;
-    let [[e0, n0], [e1, n1]] = [step[0], step[1]];
-    Some(n0 * (n1 / n0).powf((e0 / error).ln() / (e0 / e1).ln()))
+/// Where a curve reaches an error.
+enum Reached {
+    /// Its first point is there already: as many rays or fewer.
+    AtMost(f64),
+    At(f64),
+    /// No point is.
+    More,
+}
+
+impl Reached {
+    /// The rays, and how many times `rays` they are.
+    fn cells(&self, rays: f64) -> [String; 2] {
+        match self {
+            Self::AtMost(n) => [format!("≤ {n:.0}"), format!("≤ {:.1}", n / rays)],
+            Self::At(n) => [format!("{n:.0}"), format!("{:.1}", n / rays)],
+            Self::More => ["more".into(), "-".into()],
+        }
+    }
+}
+
+/// Where a curve of [error, rays] comes down to an error, between its points along a power law.
+fn rays_at(curve: &[[f64; 2]], error: f64) -> Reached {
+    match curve.iter().position(|point| point[0] <= error) {
+        None => Reached::More,
+        Some(0) => Reached::AtMost(curve[0][1]),
+        Some(i) => {
+            let [[e0, n0], [e1, n1]] = [curve[i - 1], curve[i]];
+            Reached::At(n0 * (n1 / n0).powf((e0 / error).ln() / (e0 / e1).ln()))
+        }
+    }
 }
 
 /// A block of streets: boxes of 10 to 60 m on a ground of 300 m.

@@ -65,11 +65,36 @@ pub(crate) fn radiance(prt: &Prt, light: &Rgb) -> Vec<f64> {
         let terms = values.iter().step_by(step).zip(&light.values);
         terms.map(|(t, l)| f64::from(*t) * f64::from(l[0])).sum::<f64>()
     };
+    assert_eq!(light.values.len(), (transfer.bands * transfer.bands) as usize, "a light of as many bands");
+    assert_eq!(transfer.values.len(), row * transfer.albedo.len(), "an albedo for each receiver");
     let rows = transfer.values.chunks_exact(row).zip(&transfer.albedo);
     rows.map(|(values, albedo)| f64::from(albedo[0]) * lit(values)).collect()
+}
+
+/// Open share of every vertex; a bake leaves the list out where all are open, which is the worst that a closed scene can do.
+pub(crate) fn shares(prt: &Prt) -> Vec<f64> {
+    let (count, openness) = (prt.geometry.positions.len(), &prt.transfer.openness);
+    if openness.is_empty() {
+        return vec![1.0; count];
+    }
+    assert_eq!(openness.len(), count, "a share for each vertex");
+    openness.iter().map(|&share| f64::from(share)).collect()
 }
 
 /// Numbers of a bake's transfer in f64.
 pub(crate) fn values(prt: &Prt) -> Vec<f64> {
     prt.transfer.values.iter().map(|&v| f64::from(v)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a bowl or a gap would be if no ray met it: an empty list, and still a share for each vertex to judge.
+    #[test]
+    fn open_receivers_have_shares() {
+        let prt = quiet(&grey("plane", 0.5), &fixed(1, 16, 0));
+        assert!(prt.transfer.openness.is_empty());
+        assert_eq!(shares(&prt), vec![1.0; prt.geometry.positions.len()]);
+    }
 }

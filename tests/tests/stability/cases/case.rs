@@ -72,9 +72,10 @@ pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// The largest of some errors; not a number where one is none.
+/// The largest of some errors, at least 0; not a number where one is none, infinite where there are no errors: a case that
+/// looks at nothing must not pass.
 pub(crate) fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
-    errors.into_iter().fold(0.0, worse)
+    errors.into_iter().fold(None, |most, error| Some(worse(most.unwrap_or(0.0), error))).unwrap_or(f64::INFINITY)
 }
 
 /// Largest difference between two lists, infinite where their lengths differ.
@@ -97,6 +98,13 @@ mod tests {
         assert_eq!(SOUND.row(), "| t | b | 1 | 0.5 | n | not a number |");
         let texts = [0.0, 12.345, 100.0, 123_456.0, 0.000_1].map(shown);
         assert_eq!(texts, ["0", "12.3", "100", "1.23e5", "1e-4"]);
+    }
+
+    #[test]
+    fn worst_hides_nothing() {
+        assert_eq!(worst([-1.0, 0.5, 0.25]), 0.5);
+        assert!([[f64::NAN, 0.5], [0.5, f64::NAN]].iter().all(|errors| worst(*errors).is_nan()));
+        assert_eq!([worst([]), difference(&[], &[]), difference(&[0.0], &[])], [f64::INFINITY; 3]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::baking::{fixed, grey, quiet, values};
-use super::case::difference;
+use super::case::{difference, worst};
 use glam::Vec3;
 use sh_math::{Bands, zonal};
 
@@ -11,9 +11,9 @@ pub(crate) fn inverted() -> Case {
         title: "every third shading normal points behind the surface",
         bound: "change of the transfer of a plane, infinite where they are not counted: the face's normal takes their place",
         limit: 1e-7,
-        ours: || mended(|i, normal| if i % 3 == 0 { -normal } else { normal }),
+        ours: || mended(turned_round),
         naive_method: "the cosine about the normal as given",
-        naive: || taken_as_given(Vec3::NEG_Y),
+        naive: || taken_as_given(turned_round, |normal| normal),
     }
 }
 
@@ -22,22 +22,31 @@ pub(crate) fn not_a_number() -> Case {
         title: "shading normals that are zero, infinite or not a number",
         bound: "change of the transfer of a plane, infinite where they are not counted",
         limit: 1e-7,
-        ours: || {
-            mended(|i, normal| match i % 12 {
-                0 => Vec3::NAN,
-                3 => Vec3::ZERO,
-                6 => Vec3::INFINITY,
-                9 => Vec3::new(f32::NAN, 1.0, 0.0),
-                _ => normal,
-            })
-        },
+        ours: || mended(no_direction),
         naive_method: "the normal over its length",
-        naive: || taken_as_given(Vec3::ZERO / Vec3::ZERO.length()),
+        naive: || taken_as_given(no_direction, |normal| normal / normal.length()),
+    }
+}
+
+/// What takes the place of the normal of a vertex.
+type Broken = fn(usize, Vec3) -> Vec3;
+
+fn turned_round(i: usize, normal: Vec3) -> Vec3 {
+    if i.is_multiple_of(3) { -normal } else { normal }
+}
+
+fn no_direction(i: usize, normal: Vec3) -> Vec3 {
+    match i % 12 {
+        0 => Vec3::NAN,
+        3 => Vec3::ZERO,
+        6 => Vec3::INFINITY,
+        9 => Vec3::new(f32::NAN, 1.0, 0.0),
+        _ => normal,
     }
 }
 
 /// Change of a plane's transfer when every third normal is broken in some way.
-fn mended(broken: fn(usize, Vec3) -> Vec3) -> f64 {
+fn mended(broken: Broken) -> f64 {
     let settings = fixed(5, 16, 0);
     let mut scene = grey("plane", 0.5);
     let before = values(&quiet(&scene, &settings));
@@ -49,13 +58,15 @@ fn mended(broken: fn(usize, Vec3) -> Vec3) -> f64 {
     if counted { difference(&before, &values(&prt)) } else { f64::INFINITY }
 }
 
-/// Difference that one such normal makes where it is used as it stands.
-fn taken_as_given(normal: Vec3) -> f64 {
+/// The same where the cosine of open receivers is taken about what is `made` of each normal as it stands.
+fn taken_as_given(broken: Broken, made: fn(Vec3) -> Vec3) -> f64 {
     let bands = Bands::new(5).expect("in range");
     let transfer = |normal: Vec3| {
         let mut out = vec![0.0f32; bands.coefficients()];
         zonal::cosine_transfer(bands, normal, &mut out);
         out.into_iter().map(f64::from).collect::<Vec<f64>>()
     };
-    difference(&transfer(Vec3::Y), &transfer(normal))
+    let plane = &grey("plane", 0.5).meshes[0];
+    let changes = plane.normals.iter().enumerate();
+    worst(changes.map(|(i, &normal)| difference(&transfer(normal), &transfer(made(broken(i, normal))))))
 }

@@ -70,17 +70,29 @@ pub(crate) fn behind_the_angular_map() -> Case {
         bound: "error of the angle from forward over π, which the pixels hold: the rim's pixel is half a pixel of 64 off",
         limit: 1.0 / 32.0,
         ours: || {
-            worst(
-                [Vec3::NEG_Z, Vec3::new(-0.0, 0.0, -1.0), Vec3::new(1e-30, 0.0, -1.0)]
-                    .map(|d| (f64::from(ramp().radiance(d)[0]) - 1.0).abs()),
-            )
+            let map = ramp();
+            straight_back(|d| map.radiance(d)[0])
         },
         naive_method: "the listing: the centre where x² + y² = 0",
         naive: || {
-            let centre = ramp().pixels[32 * 64 + 32][0];
-            (f64::from(centre) - 1.0).abs()
+            let map = ramp();
+            straight_back(|d| as_listed(&map, d))
         },
     }
+}
+
+/// Worst angle over π that a look-up straight back finds, less 1.
+fn straight_back(look: impl Fn(Vec3) -> f32) -> f64 {
+    let directions = [Vec3::NEG_Z, Vec3::new(-0.0, 0.0, -1.0), Vec3::new(1e-30, 0.0, -1.0)];
+    worst(directions.map(|direction| (f64::from(look(direction)) - 1.0).abs()))
+}
+
+/// The listing's way into the map: `r = acos(z) / π / sqrt(x² + y²)`, and 0 where that would divide by 0.
+fn as_listed(map: &Probe, Vec3 { x, y, z }: Vec3) -> f32 {
+    let sine = (x * x + y * y).sqrt();
+    let r = if sine > 0.0 { libm::acosf(z) / std::f32::consts::PI / sine } else { 0.0 };
+    let place = |v: f32, side: usize| (((0.5 + 0.5 * v * r) * side as f32) as usize).min(side - 1);
+    map.pixels[place(y, map.height) * map.width + place(x, map.width)][0]
 }
 
 fn bands(count: u32) -> Bands {
@@ -108,7 +120,7 @@ fn raw(path: &Path) -> Probe {
 }
 
 fn darkness(probe: &Probe) -> f64 {
-    worst(probe.pixels.as_flattened().iter().map(|&value| f64::from((-value).max(0.0))))
+    worst(probe.pixels.as_flattened().iter().map(|&value| -f64::from(value)))
 }
 
 /// Layout, width and height.

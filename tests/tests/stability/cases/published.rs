@@ -1,6 +1,7 @@
 //! Rays as the papers trace them: Moeller and Trumbore's test in f32 with an absolute least determinant.
 
 use glam::{Vec3, Vec3Swizzles};
+use raytrace::{Ray, Tracer, offset_origin};
 use sampling::frame::Frame;
 use sampling::rng::Rng;
 use sampling::warp::square_to_cosine_concentric;
@@ -48,6 +49,47 @@ pub(crate) fn open_share(mesh: &Mesh, vertex: usize, start: Start, rays: u32) ->
         !triangles.any(|t| meets(origin, direction, t.map(|i| mesh.positions[i as usize]), least).is_some())
     });
     open.count() as f64 / f64::from(rays)
+}
+
+/// All meshes as one: their triangles are all that the methods here know.
+pub(crate) fn merged(meshes: &[Mesh]) -> Mesh {
+    let mut all = Mesh::default();
+    for mesh in meshes {
+        let first = all.positions.len() as u32;
+        all.positions.extend(&mesh.positions);
+        all.normals.extend(&mesh.normals);
+        all.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    all
+}
+
+/// Rays over a vertex, just above it, as many to each direction as its cosine.
+pub(crate) fn rays_over(mesh: &Mesh, vertex: usize) -> [Ray; 64] {
+    let normal = mesh.normals[vertex];
+    let (origin, frame) = (offset_origin(mesh.positions[vertex], normal), Frame::from_normal(normal));
+    let mut rng = Rng::new(5, vertex as u64);
+    std::array::from_fn(|_| Ray::new(origin, frame.to_world(square_to_cosine_concentric(rng.next_square()))))
+}
+
+/// Radiance of each vertex under a sky of 1, bounce by bounce as it comes: what arrives from the first corner of what a ray
+/// meets, times the vertex's factor, whatever that is.
+pub(crate) fn bounced(mesh: &Mesh, factors: &[f64], bounces: u32) -> Vec<f64> {
+    let tracer = Tracer::build(&mesh.positions, &mesh.triangles, &[]);
+    let met = |ray: &Ray| tracer.closest(ray, &|_, _, _| true).map(|hit| mesh.triangles[hit.triangle as usize][0]);
+    let seen: Vec<_> = (0..factors.len()).map(|v| rays_over(mesh, v).map(|ray| met(&ray))).collect();
+    let bounce = |last: &[f64], sky: f64| -> Vec<f64> {
+        let arriving = |met: &[Option<u32>]| {
+            met.iter().map(|met| met.map_or(sky, |corner| last[corner as usize])).sum::<f64>() / met.len() as f64
+        };
+        factors.iter().zip(&seen).map(|(factor, met)| factor * arriving(met)).collect()
+    };
+    let mut last = bounce(&vec![0.0; factors.len()], 1.0);
+    let mut sum = last.clone();
+    for _ in 0..bounces {
+        last = bounce(&last, 0.0);
+        sum.iter_mut().zip(&last).for_each(|(sum, term)| *sum += term);
+    }
+    sum
 }
 
 /// Whether a ray from a point misses all triangles of a mesh.

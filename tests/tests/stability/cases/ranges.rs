@@ -3,54 +3,73 @@
 use super::Case;
 use super::baking::{fixed, grey, quiet, radiance};
 use super::case::worst;
-use coeff_io::Prt;
-use sh_math::{Bands, project, zonal};
+use coeff_io::{Prt, Transfer};
+use glam::DVec3;
+use sh_math::hemisphere::Basis;
+use sh_math::{Bands, project};
 use std::f64::consts::FRAC_PI_2;
+use study::cost::Format;
 
 pub(crate) fn transfer_in_8_bit() -> Case {
     Case {
         title: "transfer of the Cornell box in 8 bits, radiance under the clear sky",
-        bound: "error over the brightest radiance: half a step, 1/254 of each coefficient's largest, 25 of them at random",
+        bound: "error over the brightest radiance: half a step, 1/510 of each coefficient's range, 25 of them at random",
         limit: 0.01,
-        ours: || eight_bit_error(from_data),
+        ours: || eight_bit_error(|transfer| Format::U8.round_trip(transfer)),
         naive_method: "the constant in 0 to 1, all others within ±0.75 of that",
-        naive: || eight_bit_error(fixed_range),
+        naive: || eight_bit_error(in_fixed_range),
     }
 }
 
 pub(crate) fn clipped_transfer() -> Case {
     Case {
         title: "numbers of that transfer that the range clips",
-        bound: "their share: none, as the range is the largest of the data",
+        bound: "share of numbers off by more than half a step of their range: none, as the range is that of the data",
         limit: 0.0,
-        ours: || clipped_share(from_data),
+        ours: || clipped_share(|transfer| Format::U8.round_trip(transfer), half_steps_of_data),
         naive_method: "the constant in 0 to 1, all others within ±0.75 of that",
-        naive: || clipped_share(fixed_range),
+        naive: || clipped_share(in_fixed_range, half_steps_of_fixed),
     }
 }
 
 pub(crate) fn grazing_light() -> Case {
     Case {
         title: "irradiance in the modified H-basis, lights at 0 to 90°, 8 bits",
-        bound: "error of a coefficient over the largest constant: half a step, 1/254 of the largest coefficient, which is 0.57 of that constant",
+        bound: "error of a coefficient over the largest constant: half a step, 1/510 of a range of at most twice the largest coefficient, which is 0.57 of that constant",
         limit: 0.57 / 254.0,
-        ours: || grazing_error(|largest, _| largest),
+        ours: || grazing_error(|lights| Format::U8.round_trip(lights)),
         naive_method: "±0.75 of each light's constant",
-        naive: || grazing_error(|_, constant| 0.75 * constant),
+        naive: || grazing_error(by_each_constant),
     }
 }
 
-/// Largest value of each coefficient that 8 bits can hold, from values of `n` coefficients.
-type Ranges = fn(&[f32], usize) -> Vec<f32>;
+/// Coefficients that were stored in 8 bits and read back.
+type Stored = fn(&Transfer) -> Transfer;
 
-fn from_data(values: &[f32], n: usize) -> Vec<f32> {
-    let largest = |i: usize| values.iter().skip(i).step_by(n).fold(f32::MIN_POSITIVE, |most, v| most.max(v.abs()));
-    (0..n).map(largest).collect()
+/// Range of all coefficients but the first, over the constant, as printed.
+const REST: f32 = 0.75;
+
+/// As the paper stores transfer: the same range for all coefficients but the first, whatever they hold.
+fn in_fixed_range(transfer: &Transfer) -> Transfer {
+    let ranges = fixed_ranges(transfer);
+    let n = ranges.len();
+    let values = transfer.values.iter().enumerate().map(|(i, &value)| through_8_bit(value, ranges[i % n]));
+    Transfer { values: values.collect(), ..transfer.clone() }
 }
 
-fn fixed_range(values: &[f32], n: usize) -> Vec<f32> {
-    let constant = from_data(values, n)[0];
-    (0..n).map(|i| if i == 0 { constant } else { 0.75 * constant }).collect()
+fn fixed_ranges(transfer: &Transfer) -> Vec<f32> {
+    let n = row_len(transfer);
+    let constant = column(transfer, 0).fold(f32::MIN_POSITIVE, |most, v| most.max(v.abs()));
+    (0..n).map(|i| if i == 0 { constant } else { REST * constant }).collect()
+}
+
+/// The same range, from the constant of each row.
+fn by_each_constant(transfer: &Transfer) -> Transfer {
+    let row = |row: &[f32]| -> Vec<f32> {
+        let stored = |(i, &value): (usize, &f32)| if i == 0 { value } else { through_8_bit(value, REST * row[0]) };
+        row.iter().enumerate().map(stored).collect()
+    };
+    Transfer { values: transfer.values.chunks_exact(row_len(transfer)).flat_map(row).collect(), ..transfer.clone() }
 }
 
 /// To 8 bits and back: -range is 0, range is 254, so that 0 stays 0.
@@ -59,60 +78,68 @@ fn through_8_bit(value: f32, range: f32) -> f32 {
     (code / 127.0 - 1.0) * range
 }
 
+fn row_len(transfer: &Transfer) -> usize {
+    (transfer.bands * transfer.bands * transfer.channels) as usize
+}
+
+fn column(transfer: &Transfer, i: usize) -> impl Iterator<Item = f32> {
+    transfer.values.iter().copied().skip(i).step_by(row_len(transfer))
+}
+
 fn cornell() -> Prt {
     quiet(&grey("cornell-box", 0.6), &fixed(5, 256, 2))
 }
 
-fn eight_bit_error(ranges: Ranges) -> f64 {
+fn eight_bit_error(stored: Stored) -> f64 {
     let mut prt = cornell();
     let sky = probe_io::builtin("sky").expect("builtin");
     let light = project(Bands::new(5).expect("in range"), sky.samples());
     let before = radiance(&prt, &light);
-    let n = 25;
-    let ranges = ranges(&prt.transfer.values, n);
-    for (i, value) in prt.transfer.values.iter_mut().enumerate() {
-        *value = through_8_bit(*value, ranges[i % n]);
-    }
+    prt.transfer = stored(&prt.transfer);
     let brightest = before.iter().fold(0.0, |most, &value| f64::max(most, value));
     worst(radiance(&prt, &light).iter().zip(&before).map(|(a, b)| (a - b).abs() / brightest))
 }
 
-fn clipped_share(ranges: Ranges) -> f64 {
-    let values = cornell().transfer.values;
-    let ranges = ranges(&values, 25);
-    let clipped = values.iter().enumerate().filter(|(i, value)| value.abs() > ranges[i % 25]);
-    clipped.count() as f64 / values.len() as f64
+/// What a few operations on 32-bit floats lose.
+const ROUNDING: f32 = 4.0 * f32::EPSILON;
+
+/// Share of numbers that are off by more than rounding to the nearest step of their range explains.
+fn clipped_share(stored: Stored, half_steps: fn(&Transfer) -> Vec<f32>) -> f64 {
+    let given = cornell().transfer;
+    let (stored, half_steps) = (stored(&given), half_steps(&given));
+    assert_eq!(stored.values.len(), given.values.len(), "as many numbers come back");
+    let clipped = given.values.iter().zip(&stored.values).enumerate().filter(|(i, (a, b))| {
+        let kept = (*a - *b).abs() <= half_steps[i % half_steps.len()];
+        !kept
+    });
+    clipped.count() as f64 / given.values.len() as f64
 }
 
-/// Worst error of the coefficients of lights from the zenith to the horizon; `range` from the largest of all and the
-/// light's own constant.
-fn grazing_error(range: fn(f64, f64) -> f64) -> f64 {
-    let lights: Vec<[f64; 6]> = (0..=90).map(|degrees| modified_h(FRAC_PI_2 * f64::from(degrees) / 90.0)).collect();
-    let largest = |of: fn(&[f64; 6]) -> f64| lights.iter().map(of).fold(0.0, f64::max);
-    let rest = largest(|c| c[1..].iter().fold(0.0, |most, v| f64::max(most, v.abs())));
-    let constant = largest(|c| c[0]);
-    let error = |c: &[f64; 6]| {
-        let range = range(rest, c[0]) as f32;
-        worst(c[1..].iter().map(|&value| (f64::from(through_8_bit(value as f32, range)) - value).abs() / constant))
+/// Half a step of 255 over what each coefficient holds, and what 32-bit floats lose beside it.
+fn half_steps_of_data(transfer: &Transfer) -> Vec<f32> {
+    let half = |i: usize| {
+        let [low, high] = column(transfer, i).fold([f32::MAX, f32::MIN], |[low, high], v| [low.min(v), high.max(v)]);
+        (high - low) / 510.0 + ROUNDING * low.abs().max(high.abs())
     };
-    worst(lights.iter().map(error))
+    (0..row_len(transfer)).map(half).collect()
 }
 
-/// Coefficients of the irradiance of a light at an angle from the normal, by way of nine spherical harmonics.
-fn modified_h(angle: f64) -> [f64; 6] {
-    let (sin, cos) = libm::sincos(angle);
-    let mut s = vec![0.0; 9];
-    sh_math::evaluate_f64(Bands::new(3).expect("in range"), glam::DVec3::new(sin, 0.0, cos), &mut s);
-    s.iter_mut().enumerate().for_each(|(i, value)| *value *= zonal::clamped_cosine(i.isqrt()));
-    let root = f64::sqrt;
-    let third = s[2] / root(8.0) + root(15.0 / 32.0) * s[6];
-    let slope = 0.375 * root(2.5);
-    [
-        s[0] / root(2.0) + root(3.0 / 8.0) * s[2] + root(3.0) * third,
-        s[1] / root(2.0) + slope * s[5],
-        -2.0 * third,
-        s[3] / root(2.0) + slope * s[7],
-        s[4] / root(2.0),
-        s[8] / root(2.0),
-    ]
+/// Half a step of 254 over each fixed range, and the same.
+fn half_steps_of_fixed(transfer: &Transfer) -> Vec<f32> {
+    fixed_ranges(transfer).into_iter().map(|range| range / 254.0 + ROUNDING * range).collect()
+}
+
+/// Worst error of the coefficients of lights from the zenith to the horizon, as a share of the largest constant.
+fn grazing_error(stored: Stored) -> f64 {
+    let light = |degrees: u32| {
+        let (sin, cos) = libm::sincos(FRAC_PI_2 * f64::from(degrees) / 90.0);
+        Basis::ModifiedH6.project_radiance([(DVec3::new(sin, 0.0, cos), [1.0; 3])]).into_iter().map(|c| c[0])
+    };
+    // the six functions are stored as six channels of one band
+    let lights = Transfer { bands: 1, channels: 6, values: (0..=90).flat_map(light).collect(), ..Transfer::default() };
+    let constant = column(&lights, 0).fold(0.0, f32::max);
+    let stored = stored(&lights);
+    assert_eq!(stored.values.len(), lights.values.len(), "as many numbers come back");
+    let error = |(a, b): (&f32, &f32)| f64::from(a - b).abs() / f64::from(constant);
+    worst(lights.values.iter().zip(&stored.values).map(error))
 }

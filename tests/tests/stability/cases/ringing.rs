@@ -1,7 +1,7 @@
 //! Suns in few bands: reconstructions that ring below zero.
 
 use super::Case;
-use super::case::worst;
+use super::case::{worse, worst};
 use glam::DVec3;
 use sampling::rng::Rng;
 use sh_math::{Bands, Rgb, project, window};
@@ -70,7 +70,7 @@ fn hann(n: u32) -> Vec<f64> {
 /// most of the light, finer than any wave of ten bands.
 fn depth(light: &Rgb, window: &[f64]) -> f64 {
     let windowed = light.windowed(window);
-    let (mut lowest, mut highest) = (0.0f64, 0.0f64);
+    let (mut depth, mut highest) = (0.0f64, 0.0f64);
     let (u, v) = SUN.any_orthonormal_pair();
     for i in 0..=400 {
         let (sin, cos) = libm::sincos(PI * f64::from(i) / 400.0);
@@ -78,10 +78,10 @@ fn depth(light: &Rgb, window: &[f64]) -> f64 {
             let (s, c) = libm::sincos(TAU * f64::from(j) / 60.0);
             let direction = SUN * cos + (u * c + v * s) * sin;
             let value = f64::from(windowed.reconstruct(direction.as_vec3())[0]);
-            (lowest, highest) = (lowest.min(value), highest.max(value));
+            (depth, highest) = (worse(depth, -value), highest.max(value));
         }
     }
-    -lowest / highest
+    depth / highest
 }
 
 /// Relative error of the energy that a reconstruction holds after `change`.

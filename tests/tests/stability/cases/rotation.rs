@@ -288,7 +288,7 @@ fn composition_error(rotate: impl Fn(u32, DQuat, &mut [f64])) -> f64 {
         rotate(n, second * first, &mut once);
         let composed = difference(&steps, &once);
         rotate(n, (second * first).inverse(), &mut once);
-        composed.max(difference(&start, &once))
+        worse(composed, difference(&start, &once))
     };
     worst((2..=10).map(error))
 }

@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::baking::{quiet, radiance};
-use super::published::random_direction;
+use super::published::{merged, random_direction};
 use bake::settings;
 use coeff_io::{Refine, Settings};
 use glam::Vec3;
@@ -19,7 +19,7 @@ pub(crate) fn twelve_sided_sphere() -> Case {
         limit: 0.0,
         ours: || dark_receivers(vec![ball()], &settings::standard()),
         naive_method: "a shadow ray from each point of a facet",
-        naive: dark_points,
+        naive: || dark_points(vec![ball()], &settings::standard()),
     }
 }
 
@@ -28,22 +28,34 @@ pub(crate) fn split_sphere() -> Case {
         title: "the same sphere over a ground, split to edges of 0.15, 5 bands",
         bound: "the same share: pieces see their own facet where their normal leans over it, but five bands reach past it",
         limit: 0.0,
-        ours: || {
-            let mut ground = scene::builtin("plane").expect("builtin").meshes.remove(0);
-            ground.positions.iter_mut().for_each(|p| p.y = -1.0);
-            dark_receivers(vec![ball(), ground], &Settings { refine: Refine::Edge(0.15), ..settings::standard() })
-        },
+        ours: || dark_receivers(ball_on_ground(), &split()),
         naive_method: "a shadow ray from each point of a facet",
-        naive: dark_points,
+        naive: || dark_points(ball_on_ground(), &split()),
     }
+}
+
+fn split() -> Settings {
+    Settings { refine: Refine::Edge(0.15), ..settings::standard() }
 }
 
 /// Cosine from which a point counts as lit.
 const LIT: f32 = 0.1;
 
-fn suns() -> Vec<Vec3> {
+/// The suns that stand high enough to pass any mesh but the first.
+fn suns(meshes: &[Mesh]) -> Vec<Vec3> {
+    let lowest = if meshes.len() > 1 { 0.2 } else { -1.0 };
     let mut rng = Rng::new(2, 0);
-    (0..40).map(|_| random_direction(&mut rng)).collect()
+    (0..40).map(|_| random_direction(&mut rng)).filter(|sun| sun.y > lowest).collect()
+}
+
+fn scene_of(meshes: Vec<Mesh>) -> Scene {
+    Scene { meshes, materials: vec![Material::default()], ..Scene::default() }
+}
+
+fn ball_on_ground() -> Vec<Mesh> {
+    let mut ground = scene::builtin("plane").expect("builtin").meshes.remove(0);
+    ground.positions.iter_mut().for_each(|p| p.y = -1.0);
+    vec![ball(), ground]
 }
 
 /// A unit sphere of 12 by 6 quads with the normals of the sphere.
@@ -70,31 +82,35 @@ fn ball() -> Mesh {
     mesh
 }
 
-/// Share of the first mesh's lit receivers that stay dark under the suns that stand high enough to pass any other mesh.
+/// Share of the first mesh's lit receivers that stay dark under the suns.
 fn dark_receivers(meshes: Vec<Mesh>, settings: &Settings) -> f64 {
-    let lowest = if meshes.len() > 1 { 0.2 } else { -1.0 };
-    let scene = Scene { meshes, materials: vec![Material::default()], ..Scene::default() };
+    let scene = scene_of(meshes);
     let prt = quiet(&scene, settings);
     let own = prt.meshes[0].vertices as usize;
     let (mut lit, mut dark) = (0, 0);
-    for sun in suns().into_iter().filter(|sun| sun.y > lowest) {
+    for sun in suns(&scene.meshes) {
         let light = project(Bands::new(5).expect("in range"), [(sun.as_dvec3(), [std::f64::consts::PI; 3])]);
         for (value, normal) in radiance(&prt, &light).into_iter().zip(&prt.geometry.normals).take(own) {
-            if Vec3::from(*normal).dot(sun) > LIT {
+            // what is no number is lit and dark
+            let turned_away = Vec3::from(*normal).dot(sun) <= LIT;
+            if !turned_away {
                 lit += 1;
-                dark += u32::from(value < 0.01);
+                let bright = value >= 0.01;
+                dark += u32::from(!bright);
             }
         }
     }
     f64::from(dark) / f64::from(lit)
 }
 
-/// Points of the facets with interpolated normals, tested by a ray to the sun.
-fn dark_points() -> f64 {
-    let mesh = ball();
-    let tracer = Tracer::build(&mesh.positions, &mesh.triangles, &[]);
+/// Points of the first mesh's facets with interpolated normals, tested by a ray to the sun.
+fn dark_points(meshes: Vec<Mesh>, settings: &Settings) -> f64 {
+    let scene = scene_of(meshes);
+    let scene = bake::refine(&scene, settings).expect("splits");
+    let (mesh, all) = (&scene.meshes[0], merged(&scene.meshes));
+    let tracer = Tracer::build(&all.positions, &all.triangles, &[]);
     let (mut lit, mut dark) = (0, 0);
-    for sun in suns() {
+    for sun in suns(&scene.meshes) {
         for (t, corners) in mesh.triangles.iter().enumerate() {
             for (u, v) in [(1.0 / 3.0, 1.0 / 3.0), (0.05, 0.05), (0.9, 0.05), (0.05, 0.9)] {
                 if mesh.normal(t, u, v).dot(sun) > LIT {
