@@ -1,6 +1,7 @@
 //! `relume bases`: what each basis of irradiance normal mapping loses, and what it costs.
 
 use crate::console::Console;
+use crate::output;
 use anyhow::{Context, Result};
 use coeff_io::replace;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -16,7 +17,10 @@ Examples:
   relume bases --signals 1000000 --seed 7 -o bases/
 
 Prints the table and writes bases.csv, bases.svg and bases.png. Errors depend on the seed alone; the nanoseconds are
-measured on this machine: let it rest meanwhile.";
+measured on this machine: let it rest meanwhile. One thread does all the work, whatever --threads says.";
+
+/// The files that are written: the table, then the two forms of the plot.
+const FILES: [&str; 3] = ["bases.csv", "bases.svg", "bases.png"];
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -33,16 +37,23 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let folder = &options.output;
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("cannot make the folder {}: choose another, or make room for it", folder.display()))?;
+    check(folder)?;
     let study = study::bases::study(Settings { signals: options.signals, seed: options.seed });
     let (svg, picture) = (study.svg()?, study.picture()?);
-    write(&folder.join("bases.csv"), |file| file.write_all(study.csv().as_bytes()))?;
-    write(&folder.join("bases.svg"), |file| file.write_all(svg.as_bytes()))?;
-    write(&folder.join("bases.png"), |file| png(&picture, file))?;
+    let [table, drawing, pixels] = FILES.map(|name| folder.join(name));
+    write(&table, |file| file.write_all(study.csv().as_bytes()))?;
+    write(&drawing, |file| file.write_all(svg.as_bytes()))?;
+    write(&pixels, |file| png(&picture, file))?;
     console.print(&study.text())?;
     console.notice(&format!("wrote bases.csv, bases.svg and bases.png into {}", folder.display()));
     Ok(())
+}
+
+/// Makes the folder, and fails where one of the files cannot be written there.
+fn check(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make the folder {}: choose another, or make room for it", folder.display()))?;
+    FILES.iter().try_for_each(|name| output::check(&folder.join(name)))
 }
 
 fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
@@ -54,4 +65,26 @@ fn png(picture: &Picture, file: &mut BufWriter<&File>) -> io::Result<()> {
     let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::NoFilter);
     let written = encoder.write_image(&picture.rgb, picture.width, picture.height, ExtendedColorType::Rgb8);
     written.map_err(io::Error::other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_is_checked_before() {
+        for name in FILES {
+            let folder = tempfile::tempdir().unwrap();
+            std::fs::create_dir(folder.path().join(name)).unwrap();
+            assert!(check(folder.path()).is_err_and(|error| error.to_string().contains(name)), "{name}");
+        }
+    }
+
+    /// A folder of a name that is none of ours is no hindrance.
+    #[test]
+    fn every_file_is_checked_before_can_fail() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("bases.txt")).unwrap();
+        assert!(check(folder.path()).is_ok());
+    }
 }

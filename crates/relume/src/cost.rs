@@ -8,8 +8,9 @@ use anyhow::{Context, Result};
 use coeff_io::{Settings, replace};
 use std::fs;
 use std::io::Write;
-use std::path::PathBuf;
-use study::cost::{Error, Goal, Report, Request, Targets, csv, page, plots, report::Machine};
+use std::path::{Path, PathBuf};
+use study::cost::report::{Machine, Run};
+use study::cost::{Error, Goal, Report, Request, Targets, csv, page, plots};
 use study::plot::chart::{Chart, Unit};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -19,8 +20,13 @@ Examples:
   relume cost house.glb --probe kitchen.hdr -o house-cost --target-error 0.005 --target-time 20 --target-size 8M
 
 Writes cost.html (one page that needs nothing else), cost.csv (every run), and the plots cost-seconds and cost-bytes as .svg
-and .png. Runs that do not fit into the budget are left out, and the page says which; three short bakes and the reference are
-made in any case. Ctrl-C ends the study; files are written when all is done.";
+and .png. Runs that do not fit into the budget are left out, and the page says which; the reference, which is two bakes, and
+one of 64 rays are made in any case. A part of the budget is kept for timing frames and drawing; on a large scene they may take
+longer. Ctrl-C ends the study; files are written when all is done.";
+
+/// The files of a report, in the order in which they are written.
+const FILES: [&str; 6] =
+    ["cost.csv", "cost-seconds.svg", "cost-seconds.png", "cost-bytes.svg", "cost-bytes.png", "cost.html"];
 
 /// Longest budget, seconds: a week.
 const MOST_SECONDS: f64 = 604_800.0;
@@ -44,7 +50,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     target_time: Option<f64>,
     /// The bytes of coefficients to recommend settings for; half of those of the target error by default.
-    #[arg(long, value_name = "BYTES", value_parser = settings::bytes)]
+    #[arg(long, value_name = "BYTES", value_parser = some_bytes)]
     target_size: Option<u64>,
     /// Number of bands of the bakes that turn another knob.
     #[arg(long, value_name = "N", default_value_t = bake::settings::standard().bands)]
@@ -61,9 +67,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let settings = options.settings()?;
     let scene = options.scene.load(console)?;
     let environment = options.probe.load(console)?;
-    fs::create_dir_all(&options.output)
-        .with_context(|| format!("cannot make the folder {}", options.output.display()))?;
-    output::check(&options.output.join("cost.html"))?;
+    check(&options.output)?;
     interrupt::watch()?;
     let targets = Targets { error: options.target_error, seconds: options.target_time, bytes: options.target_size };
     let request = Request {
@@ -84,6 +88,9 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     };
     let report = report.map_err(fault)?;
     write(options, &report)?;
+    if let Some(warning) = report.warning() {
+        console.notice(&format!("warning: {warning}"));
+    }
     for line in summary(&report) {
         console.print(&line)?;
     }
@@ -116,6 +123,20 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses a number of bytes of which there is one at least.
+fn some_bytes(text: &str) -> Result<u64, String> {
+    match settings::bytes(text)? {
+        0 => Err("no bake fits into 0 bytes: give a size such as 8M".into()),
+        bytes => Ok(bytes),
+    }
+}
+
+/// Makes the folder, and fails where one of the files cannot be written there: the study must not be lost to that.
+fn check(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    FILES.iter().try_for_each(|name| output::check(&folder.join(name)))
+}
+
 fn machine() -> Machine {
     Machine {
         threads: rayon::current_num_threads(),
@@ -136,15 +157,15 @@ fn write(options: &Options, report: &Report) -> Result<()> {
     let plots = plots(report);
     let forms = |chart: &Chart| Ok::<_, anyhow::Error>((chart.svg()?, chart.pixels()?.png()?));
     let (seconds, bytes) = (forms(&plots.seconds)?, forms(&plots.bytes)?);
-    let files = [
-        ("cost.csv", csv(report).into_bytes()),
-        ("cost-seconds.svg", seconds.0.into_bytes()),
-        ("cost-seconds.png", seconds.1),
-        ("cost-bytes.svg", bytes.0.into_bytes()),
-        ("cost-bytes.png", bytes.1),
-        ("cost.html", page(report)?.into_bytes()),
+    let contents: [Vec<u8>; FILES.len()] = [
+        csv(report).into_bytes(),
+        seconds.0.into_bytes(),
+        seconds.1,
+        bytes.0.into_bytes(),
+        bytes.1,
+        page(report)?.into_bytes(),
     ];
-    for (name, bytes) in files {
+    for (name, bytes) in FILES.into_iter().zip(contents) {
         let path = options.output.join(name);
         replace(&path, |file| file.write_all(&bytes)).with_context(|| format!("cannot write {}", path.display()))?;
     }
@@ -162,9 +183,9 @@ fn summary(report: &Report) -> Vec<String> {
         };
         let met = if advice.met { "" } else { " (not met by any run; the nearest)" };
         format!(
-            "{goal}: {}{met}: error {}, {}, {}",
+            "{goal}: {}{met}: {}, {}, {}",
             run.setting,
-            Unit::Share.write(run.transfer.p95),
+            achieved(advice.goal, run, report.kept(run), report.reference.bands),
             Unit::Seconds.write(run.seconds),
             Unit::Bytes.write(run.bytes as f64)
         )
@@ -172,9 +193,77 @@ fn summary(report: &Report) -> Vec<String> {
     report.advice.iter().map(line).collect()
 }
 
+/// The error of a run that its goal is about, as the page has it: for a size what fewer bands leave out is in it.
+fn achieved(goal: Goal, run: &Run, kept: f64, bands: u32) -> String {
+    match goal {
+        Goal::Bytes(_) => {
+            let off = run.radiance_all_bands.unwrap_or(run.radiance);
+            format!("radiance differs by {} from {bands} bands", Unit::Share.write(off))
+        }
+        Goal::Error(_) | Goal::Seconds(_) => format!("error {}", Unit::Share.write(kept)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use study::cost::{Spread, report::Knob};
+
+    #[test]
+    fn sizes_are_above_nothing() {
+        assert_eq!(some_bytes("8M"), Ok(8 << 20));
+        assert!(some_bytes("0").is_err_and(|text| text.contains("0 bytes")));
+        assert!(some_bytes("much").is_err());
+    }
+
+    #[test]
+    fn every_file_is_checked_before() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(check(&folder.path().join("new")).is_ok());
+        for name in FILES {
+            let folder = tempfile::tempdir().unwrap();
+            fs::create_dir(folder.path().join(name)).unwrap();
+            assert!(check(folder.path()).is_err_and(|error| error.to_string().contains(name)), "{name}");
+        }
+    }
+
+    /// A folder of a name that is none of ours is no hindrance.
+    #[test]
+    fn every_file_is_checked_before_can_fail() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("cost.txt")).unwrap();
+        assert!(check(folder.path()).is_ok());
+    }
+
+    /// Two bands are exact in their own bands and leave out a tenth of the light.
+    fn few_bands(goal: Goal) -> String {
+        let run = Run {
+            knob: Knob::Bands,
+            setting: String::new(),
+            can_be_typed: true,
+            bands: 2,
+            receivers: 3,
+            channels: 1,
+            bounces: 0,
+            rays: [0; 2],
+            seconds: 1.0,
+            bytes: 48,
+            transfer: Spread::default(),
+            radiance: 0.0,
+            radiance_all_bands: Some(0.103),
+        };
+        achieved(goal, &run, 0.0, 8)
+    }
+
+    #[test]
+    fn the_error_for_a_size_is_that_of_the_page() {
+        assert_eq!(few_bands(Goal::Bytes(50)), "radiance differs by 10.3 % from 8 bands");
+    }
+
+    #[test]
+    fn the_error_for_a_size_is_that_of_the_page_can_fail() {
+        assert_eq!(few_bands(Goal::Error(0.01)), "error 0 %");
+    }
 
     #[test]
     fn times_are_numbers_of_seconds() {

@@ -29,7 +29,7 @@ pub use frames::Frames;
 pub use front::front;
 pub use page::page;
 pub use plots::{Plots, plots};
-pub use recommend::{Advice, Goal, advise};
+pub use recommend::{Advice, Goal, Ground, advise};
 pub use report::Report;
 pub use resolution::Resolution;
 pub use study::study;
@@ -50,7 +50,8 @@ pub struct Request<'a> {
     pub settings: Settings,
     /// What the user wants.
     pub targets: Targets,
-    /// Seconds that the study may take; the least that makes a study is done in any case.
+    /// Seconds that the study may take; the least that makes a study, the reference and a bake of few rays, is done in
+    /// any case.
     pub budget: f64,
     /// Facts to write into the report.
     pub machine: report::Machine,

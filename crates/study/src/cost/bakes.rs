@@ -7,12 +7,15 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+/// Share of the budget that no bake may take, and its most seconds: frames are timed and pictures drawn after the bakes.
+const RESERVED: (f64, f64) = (0.15, 12.0);
+
 /// Bakes one after the other, within a budget of time.
 pub(super) struct Bakes<'a> {
     /// Split as asked.
     pub(super) scene: Cow<'a, Scene>,
     /// Seconds that splitting took; each bake would take them anew.
-    split: f64,
+    pub(super) split: f64,
     progress: ProgressFn<'a>,
     began: Instant,
     budget: f64,
@@ -81,9 +84,14 @@ impl<'a> Bakes<'a> {
         self.began.elapsed().as_secs_f64()
     }
 
-    /// Seconds of the budget that are left; below 0 where it is overdrawn.
+    /// Seconds of the budget that bakes may still take; below 0 where it is overdrawn.
     pub(super) fn left(&self) -> f64 {
-        self.budget - self.spent()
+        self.budget - self.reserved() - self.spent()
+    }
+
+    /// Seconds of the budget that are kept for timing frames and drawing.
+    pub(super) fn reserved(&self) -> f64 {
+        (RESERVED.0 * self.budget).min(RESERVED.1)
     }
 
     /// What a bake will take: a few hundred receivers, evenly drawn, are baked for trial.

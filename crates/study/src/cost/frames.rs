@@ -10,8 +10,6 @@ use std::time::Instant;
 pub(super) const SIZE: [u32; 2] = [640, 360];
 /// Most pictures that are timed after the first one.
 const MOST_FRAMES: u32 = 15;
-/// Seconds after which no further picture is begun.
-const ENOUGH: f64 = 1.0;
 
 /// How long a renderer takes for a picture under a light that turns from frame to frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,14 +24,14 @@ pub struct Frames {
     pub count: u32,
 }
 
-/// Times the CPU renderer.
+/// Times the CPU renderer; after `enough` seconds no further picture is begun.
 ///
 /// # Errors
 /// As the renderer has it.
-pub(super) fn on_cpu(prt: &Prt, environment: &Environment) -> Result<Frames, render_cpu::Error> {
+pub(super) fn on_cpu(prt: &Prt, environment: &Environment, enough: f64) -> Result<Frames, render_cpu::Error> {
     let renderer = render_cpu::Renderer::new(prt, environment)?;
     let plain = render_cpu::Frame::plain(prt.cameras[0].clone(), SIZE[0], SIZE[1]);
-    let (milliseconds, count) = median(|turn| {
+    let (milliseconds, count) = median(enough, |turn| {
         let began = Instant::now();
         renderer.draw(&render_cpu::Frame { rotation: turn, ..plain.clone() })?;
         Ok(began.elapsed().as_secs_f64())
@@ -41,15 +39,15 @@ pub(super) fn on_cpu(prt: &Prt, environment: &Environment) -> Result<Frames, ren
     Ok(Frames { renderer: "CPU".into(), bands: prt.transfer.bands, milliseconds, count })
 }
 
-/// Times a GPU; nothing is read back.
+/// Times a GPU; nothing is read back. After `enough` seconds no further picture is begun.
 ///
 /// # Errors
 /// As the renderer has it; where there is no adapter it says so.
-pub(super) fn on_gpu(prt: &Prt, environment: &Environment) -> Result<Frames, render_wgpu::Error> {
+pub(super) fn on_gpu(prt: &Prt, environment: &Environment, enough: f64) -> Result<Frames, render_wgpu::Error> {
     let gpu = Gpu::new(Driver::Any)?;
     let mut renderer = render_wgpu::Renderer::new(&gpu, prt, environment)?;
     let plain = render_wgpu::Frame::plain(prt.cameras[0].clone(), SIZE[0], SIZE[1]);
-    let (milliseconds, count) = median(|turn| {
+    let (milliseconds, count) = median(enough, |turn| {
         let timings = renderer.time(&render_wgpu::Frame { rotation: turn, ..plain.clone() })?;
         Ok(timings.frame.as_secs_f64())
     })?;
@@ -57,14 +55,14 @@ pub(super) fn on_gpu(prt: &Prt, environment: &Environment) -> Result<Frames, ren
 }
 
 /// Median milliseconds of frames whose light turns, after a first one that is not counted.
-fn median<E>(mut frame: impl FnMut(Quat) -> Result<f64, E>) -> Result<(f64, u32), E> {
+fn median<E>(enough: f64, mut frame: impl FnMut(Quat) -> Result<f64, E>) -> Result<(f64, u32), E> {
     let turn = |n: u32| Quat::from_rotation_y(0.1 * n as f32);
     frame(turn(0))?;
     let began = Instant::now();
     let mut times = Vec::new();
     for n in 1..=MOST_FRAMES {
         times.push(1e3 * frame(turn(n))?);
-        if began.elapsed().as_secs_f64() > ENOUGH {
+        if began.elapsed().as_secs_f64() > enough {
             break;
         }
     }

@@ -3,8 +3,9 @@
 use super::bakes::Check;
 use super::deviation::Spread;
 use super::frames::Frames;
-use super::recommend::Advice;
+use super::recommend::{Advice, Goal, without_own};
 use super::resolution::Resolution;
+use crate::plot::chart::Unit;
 use crate::plot::pixels::Pixels;
 use std::fmt;
 
@@ -171,7 +172,9 @@ pub struct Report {
     pub checks: Vec<Check>,
     /// Receivers with the largest errors in the run named.
     pub worst: Vec<WorstReceiver>,
-    /// The run that `worst` and the first map are about.
+    /// The bake as asked; `None` where the budget did not allow it.
+    pub asked: Option<usize>,
+    /// The run that `worst` and the first picture are about: the bake as asked, else the one of few rays.
     pub shown: usize,
     /// The baked picture, then error maps.
     pub views: Vec<View>,
@@ -179,4 +182,48 @@ pub struct Report {
     pub map_range: [f32; 2],
     /// What the budget did not allow, or what there is not, in sentences.
     pub left_out: Vec<String>,
+}
+
+impl Report {
+    /// The error of the transfer that 95 of 100 receivers of a run keep, without the reference's own.
+    #[must_use]
+    pub fn kept(&self, run: &Run) -> f64 {
+        without_own(run.transfer.p95, self.reference.own.p95)
+    }
+
+    /// What the reader must know before the numbers: that the reference is too coarse for the error asked for.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        let error = |advice: &Advice| if let Goal::Error(error) = advice.goal { Some(error) } else { None };
+        let target = self.advice.iter().find_map(error)?;
+        let own = self.reference.own.p95;
+        (own > 0.5 * target).then(|| {
+            format!(
+                "The reference itself errs by {}, more than half of the {} asked for, so whether a run keeps that is uncertain; a \
+                 longer --budget allows a closer reference.",
+                Unit::Share.write(own),
+                Unit::Share.write(target)
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::cost::sample;
+
+    /// The sample asks for an error of 1 %.
+    #[test]
+    fn a_coarse_reference_is_warned_of() {
+        let mut report = sample::report();
+        report.reference.own.p95 = 0.0051;
+        assert!(report.warning().is_some_and(|text| text.contains("0.51 %") && text.contains("1 % asked")));
+    }
+
+    #[test]
+    fn a_coarse_reference_is_warned_of_can_fail() {
+        let mut report = sample::report();
+        report.reference.own.p95 = 0.0049;
+        assert_eq!(report.warning(), None);
+    }
 }

@@ -13,6 +13,10 @@ use std::time::Instant;
 
 /// Most cells along an edge of the grid that finds triangles.
 const MOST_CELLS: usize = 48;
+/// Share of a cell by which a point on the surface may lie beside it: roundings.
+const BESIDE: f32 = 1e-3;
+/// The difference of a cosine that counts as much as lying beside the surface by as much as is allowed.
+const SAME_COSINE: f32 = 1e-3;
 
 /// The runs of different meshes, compared with the finest of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +58,7 @@ pub(super) fn study(
         words: "--refine auto".into(),
         can_be_typed: true,
         scene: bakes.scene.clone().into_owned(),
-        seconds: 0.0,
+        seconds: bakes.split,
         edge,
     };
     let mut splits = vec![asked];
@@ -167,7 +171,9 @@ fn read_at(coarse: &Prt, fine: &Prt) -> Option<Transfer> {
     for (from, to) in coarse.meshes.iter().zip(&fine.meshes) {
         let Some(surface) = Surface::new(coarse, from) else { continue };
         for vertex in to.first_vertex..to.first_vertex + to.vertices {
-            let (corners, weights) = surface.nearest(Vec3::from(fine.geometry.positions[vertex as usize]));
+            let [point, normal] =
+                [&fine.geometry.positions, &fine.geometry.normals].map(|of| Vec3::from(of[vertex as usize]));
+            let (corners, weights) = surface.nearest(point, normal);
             let out = &mut values[vertex as usize * row..][..row];
             for (corner, weight) in corners.into_iter().zip(weights) {
                 let of = &coarse.transfer.values[corner as usize * row..][..row];
@@ -182,6 +188,7 @@ fn read_at(coarse: &Prt, fine: &Prt) -> Option<Transfer> {
 /// The triangles of a mesh in a grid, to find the one that a point lies on.
 struct Surface<'a> {
     positions: &'a [[f32; 3]],
+    normals: &'a [[f32; 3]],
     triangles: &'a [[u32; 3]],
     low: Vec3,
     cell: f32,
@@ -193,7 +200,7 @@ struct Surface<'a> {
 impl<'a> Surface<'a> {
     fn new(prt: &'a Prt, mesh: &Mesh) -> Option<Self> {
         let triangles = &prt.geometry.triangles[mesh.first_triangle as usize..][..mesh.triangles as usize];
-        let positions = &prt.geometry.positions[..];
+        let (positions, normals) = (&prt.geometry.positions[..], &prt.geometry.normals[..]);
         let corners = || triangles.iter().flatten().map(|&v| Vec3::from(positions[v as usize]));
         let low = corners().reduce(Vec3::min)?;
         let size = corners().reduce(Vec3::max)? - low;
@@ -201,11 +208,10 @@ impl<'a> Surface<'a> {
         let cell = (size.max_element() / along as f32).max(f32::MIN_POSITIVE);
         let cells = size.to_array().map(|s| (s / cell) as usize + 1);
         let lists = vec![Vec::new(); cells.iter().product()];
-        let mut surface = Self { positions, triangles, low, cell, cells, lists };
+        let mut surface = Self { positions, normals, triangles, low, cell, cells, lists };
         for (index, triangle) in triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|v| Vec3::from(positions[v as usize]));
-            // A point on the surface may lie beside it by a rounding.
-            let pad = Vec3::splat(1e-3 * cell);
+            let pad = Vec3::splat(BESIDE * cell);
             let (first, last) = (surface.at(a.min(b).min(c) - pad), surface.at(a.max(b).max(c) + pad));
             for z in first[2]..=last[2] {
                 for y in first[1]..=last[1] {
@@ -225,7 +231,9 @@ impl<'a> Surface<'a> {
     }
 
     /// Corners and weights of the point of the surface nearest to `point`, which lies on it but for rounding.
-    fn nearest(&self, point: Vec3) -> ([u32; 3], [f32; 3]) {
+    ///
+    /// On a hard edge two faces are equally near: the one whose normal there agrees best with `normal` is meant.
+    fn nearest(&self, point: Vec3, normal: Vec3) -> ([u32; 3], [f32; 3]) {
         let [x, y, z] = self.at(point);
         let list = &self.lists[(z * self.cells[1] + y) * self.cells[0] + x];
         let all: Vec<u32>;
@@ -236,18 +244,21 @@ impl<'a> Surface<'a> {
         } else {
             list
         };
-        let mut best = (f32::INFINITY, ([0; 3], [0.0; 3]));
-        for &index in candidates {
+        let place = |&index: &u32| {
             let corners = self.triangles[index as usize];
             let weights = nearest_weights(point, corners.map(|v| Vec3::from(self.positions[v as usize])));
-            let there: Vec3 =
-                corners.iter().zip(weights).map(|(&v, w)| w * Vec3::from(self.positions[v as usize])).sum();
-            let distance = there.distance_squared(point);
-            if distance < best.0 {
-                best = (distance, (corners, weights));
-            }
-        }
-        best.1
+            let mean = |of: &[[f32; 3]]| -> Vec3 {
+                corners.iter().zip(weights).map(|(&v, w)| w * Vec3::from(of[v as usize])).sum()
+            };
+            let cosine = mean(self.normals).normalize_or_zero().dot(normal);
+            (mean(self.positions).distance(point), cosine, (corners, weights))
+        };
+        let places: Vec<_> = candidates.iter().map(place).collect();
+        let (least, beside) = (places.iter().map(|p| p.0).fold(f32::INFINITY, f32::min), BESIDE * self.cell);
+        let near = places.iter().filter(|p| p.0 <= least + beside);
+        let agreement = |(distance, cosine, _): &(f32, f32, _)| cosine - SAME_COSINE * (distance - least) / beside;
+        let best = near.max_by(|a, b| agreement(a).total_cmp(&agreement(b)));
+        best.map_or(([0; 3], [0.0; 3]), |best| best.2)
     }
 }
 
@@ -280,6 +291,7 @@ mod tests {
             for j in 0..=n {
                 let (x, y) = (i as f32 / n as f32, j as f32 / n as f32);
                 geometry.positions.push([x, y, 0.5 * x]);
+                geometry.normals.push(Vec3::new(-0.5, 0.0, 1.0).normalize().to_array());
                 transfer.values.push(value(x, y));
                 transfer.albedo.push([1.0; 3]);
                 if i < n && j < n {
@@ -289,8 +301,12 @@ mod tests {
                 }
             }
         }
+        one_mesh(geometry, transfer)
+    }
+
+    fn one_mesh(geometry: Geometry, transfer: Transfer) -> Prt {
         let mesh = Mesh {
-            name: "square".into(),
+            name: "one".into(),
             material: 0,
             first_vertex: 0,
             vertices: geometry.positions.len() as u32,
@@ -298,6 +314,50 @@ mod tests {
             triangles: geometry.triangles.len() as u32,
         };
         Prt { geometry, transfer, meshes: vec![mesh], ..crate::cost::sample::prt() }
+    }
+
+    /// A cube whose six faces of n x n cells have vertices of their own; the transfer is the number of the face.
+    fn cube(n: u32) -> Prt {
+        let (mut geometry, mut transfer) =
+            (Geometry::default(), Transfer { bands: 1, channels: 1, ..Transfer::default() });
+        for face in 0..6u32 {
+            let (first, sign) = (geometry.positions.len() as u32, if face < 3 { 1.0 } else { -1.0 });
+            let axes: [Vec3; 3] = std::array::from_fn(|k| Vec3::AXES[(face as usize + k) % 3]);
+            for (i, j) in (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j))) {
+                let [u, v] = [i, j].map(|k| 2.0 * k as f32 / n as f32 - 1.0);
+                geometry.positions.push((sign * axes[0] + u * axes[1] + v * axes[2]).to_array());
+                geometry.normals.push((sign * axes[0]).to_array());
+                transfer.values.push(face as f32);
+                transfer.albedo.push([1.0; 3]);
+                if i < n && j < n {
+                    let at = |i: u32, j: u32| first + i * (n + 1) + j;
+                    geometry.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                    geometry.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+        one_mesh(geometry, transfer)
+    }
+
+    /// Vertices of `fine` that read another number than that of their face; 1e-5 is some roundings of numbers up to 5.
+    fn of_another_face(coarse: &Prt, fine: &Prt) -> usize {
+        let read = read_at(coarse, fine).unwrap();
+        read.values.iter().zip(&fine.transfer.values).filter(|(a, b)| (**a - **b).abs() > 1e-5).count()
+    }
+
+    #[test]
+    fn a_hard_edge_keeps_its_faces_apart() {
+        for n in [4, 7, 12] {
+            assert_eq!(of_another_face(&cube(4), &cube(n)), 0, "{n}");
+        }
+    }
+
+    /// Without normals the faces on both sides of an edge are equally good.
+    #[test]
+    fn a_hard_edge_keeps_its_faces_apart_can_fail() {
+        let mut fine = cube(12);
+        fine.geometry.normals.fill([0.0; 3]);
+        assert!(of_another_face(&cube(4), &fine) > 20);
     }
 
     fn worst(value: impl Fn(f32, f32) -> f32) -> f32 {

@@ -3,18 +3,20 @@
 use super::bakes::{Bakes, Check, Timed};
 use super::deviation::{Deviation, Spread, Truth};
 use super::format::Format;
-use super::recommend::{Advice, Goal, advise};
+use super::recommend::{Advice, Goal, Ground, advise};
 use super::report::{Knob, Report, Run, View, WorstReceiver};
 use super::resolution::{self, Resolution};
 use super::trials::{Trial, as_asked, trials};
 use super::truth::{Reference, reference};
-use super::{Error, ProgressFn, Request, frames, front, views};
+use super::{Error, ProgressFn, Request, Targets, frames, front, views};
 use coeff_io::{Prt, Transfer};
 
 /// Receivers in the list of the worst.
 const WORST: usize = 10;
 /// Maps on the page.
 const MAPS: usize = 3;
+/// Parts of the time reserved for what follows the bakes, of which one goes to each of up to six timings of frames.
+const FRAMES_PART: f64 = 12.0;
 
 /// Bakes a scene again and again, one knob turned at a time, and compares what comes with a converged bake.
 ///
@@ -23,7 +25,8 @@ const MAPS: usize = 3;
 pub fn study(request: &Request<'_>, progress: ProgressFn<'_>) -> Result<Report, Error> {
     let mut bakes = Bakes::new(request.scene, &request.settings, request.budget, progress)?;
     let reference = reference(request, &mut bakes)?;
-    let mut sweep = Sweep { request, baked: Vec::new(), prt: None, left_out: Vec::new(), checks: Vec::new() };
+    let mut sweep =
+        Sweep { request, baked: Vec::new(), asked: None, shown: None, left_out: Vec::new(), checks: Vec::new() };
     sweep.trials(&mut bakes)?;
     let resolution = resolution::study(request, &reference.truth, &bakes, &mut sweep.left_out)?;
     sweep.report(reference, resolution, &bakes)
@@ -39,8 +42,10 @@ struct Baked {
 struct Sweep<'a> {
     request: &'a Request<'a>,
     baked: Vec<Baked>,
-    /// The bake as asked, or the first one where that did not fit, and its index.
-    prt: Option<(usize, Prt)>,
+    /// Index of the bake as asked, where it fitted.
+    asked: Option<usize>,
+    /// The bake that pictures are made of, and its index: as asked, or the first one where that did not fit.
+    shown: Option<(usize, Prt)>,
     left_out: Vec<String>,
     checks: Vec<Check>,
 }
@@ -48,16 +53,17 @@ struct Sweep<'a> {
 impl Sweep<'_> {
     /// The first trial, and every further one that the budget allows.
     fn trials(&mut self, bakes: &mut Bakes<'_>) -> Result<(), Error> {
+        let asked = as_asked(self.request).setting;
         for trial in trials(self.request) {
-            // Where nothing is left nothing more is predicted.
-            if bakes.left() <= 0.0 && self.prt.is_some() {
+            // Where nothing is left nothing more is predicted, but for the bake as asked: goals follow from it.
+            if bakes.left() <= 0.0 && self.shown.is_some() && trial.setting != asked {
                 self.left_out.push(format!("{}: no time was left", trial.setting));
                 continue;
             }
             bakes.tell("predicting", 0, 1)?;
             let predicted = bakes.predict(&trial.settings)?;
             let left = bakes.left().max(0.0);
-            let fits = predicted.seconds <= left || self.prt.is_none();
+            let fits = predicted.seconds <= left || self.shown.is_none();
             let mut came = None;
             if fits {
                 let timed = bakes.bake(&trial.setting, &trial.settings)?;
@@ -75,9 +81,12 @@ impl Sweep<'_> {
 
     fn keep(&mut self, trial: &Trial, timed: Timed) {
         let run = run_of(trial.knob, trial.setting.clone(), &timed);
-        let is_shown = self.prt.is_none() || trial.setting == as_asked(self.request).setting;
-        let transfer = if is_shown {
-            self.prt.insert((self.baked.len(), timed.prt)).1.transfer.clone()
+        let index = self.baked.len();
+        if trial.setting == as_asked(self.request).setting {
+            self.asked = Some(index);
+        }
+        let transfer = if self.shown.is_none() || self.asked == Some(index) {
+            self.shown.insert((index, timed.prt)).1.transfer.clone()
         } else {
             timed.prt.transfer
         };
@@ -97,11 +106,14 @@ impl Sweep<'_> {
         for baked in &mut self.baked {
             errors.push(compare(&mut baked.run, &baked.transfer, &reference.truth));
         }
-        let (shown, prt) = self.prt.take().ok_or(Error::Cancelled)?;
+        let (shown, prt) = self.shown.take().ok_or(Error::Cancelled)?;
         let runs: Vec<Run> = self.baked.into_iter().map(|baked| baked.run).collect();
         let bands = self.request.settings.bands;
         let (fast_front, small_front) = fronts(&runs, bands);
-        let advice = advice(&runs, self.request, shown);
+        let ground = Ground { bands, own: reference.facts.own.p95, asked: self.asked };
+        let asked = asked_seconds(&runs, self.asked, &self.checks, &as_asked(self.request).setting);
+        let goals = goals(self.request.targets, asked.unwrap_or(runs[shown].seconds), runs[shown].bytes);
+        let advice: Vec<Advice> = goals.into_iter().filter_map(|goal| advise(&runs, ground, goal)).collect();
         bakes.tell("drawing", 0, 1)?;
         let frames = time_frames(self.request, &reference, bakes, &mut self.left_out)?;
         let views = draw(self.request, (shown, &prt), &runs, &advice, &errors)?;
@@ -122,6 +134,7 @@ impl Sweep<'_> {
             advice,
             resolution,
             frames,
+            asked: self.asked,
             shown,
             views,
             map_range: views::RANGE,
@@ -132,7 +145,7 @@ impl Sweep<'_> {
     /// What smaller number formats would do to the bakes that no ray separates from each other.
     fn add_formats(&mut self) {
         let wanted = |(index, baked): &(usize, &Baked)| {
-            baked.run.knob == Knob::Bands || self.prt.as_ref().is_some_and(|(shown, _)| shown == index)
+            baked.run.knob == Knob::Bands || self.shown.as_ref().is_some_and(|(shown, _)| shown == index)
         };
         let stored = |(_, baked): (usize, &Baked)| {
             [Format::F16, Format::U8].map(|format| {
@@ -186,15 +199,19 @@ fn fronts(runs: &[Run], bands: u32) -> (Vec<usize>, Vec<usize>) {
     (front(&runs.iter().map(fast).collect::<Vec<_>>()), front(&runs.iter().map(small).collect::<Vec<_>>()))
 }
 
-/// The advice for each target.
-fn advice(runs: &[Run], request: &Request<'_>, shown: usize) -> Vec<Advice> {
-    let targets = request.targets;
-    let goals = [
+/// Seconds of the bake as asked, or those predicted where it was left out.
+fn asked_seconds(runs: &[Run], asked: Option<usize>, checks: &[Check], setting: &str) -> Option<f64> {
+    let predicted = || checks.iter().find(|check| check.name == setting).map(|check| check.predicted.seconds);
+    asked.map(|index| runs[index].seconds).or_else(predicted)
+}
+
+/// What the user wants; where it was not said, from the seconds and the bytes of the bake as asked.
+fn goals(targets: Targets, seconds: f64, bytes: u64) -> [Goal; 3] {
+    [
         Goal::Error(f64::from(targets.error)),
-        Goal::Seconds(targets.seconds.unwrap_or(0.25 * runs[shown].seconds)),
-        Goal::Bytes(targets.bytes.unwrap_or(runs[shown].bytes / 2)),
-    ];
-    goals.into_iter().filter_map(|goal| advise(runs, request.settings.bands, goal)).collect()
+        Goal::Seconds(targets.seconds.unwrap_or(0.25 * seconds)),
+        Goal::Bytes(targets.bytes.unwrap_or(bytes / 2)),
+    ]
 }
 
 /// Times pictures of some numbers of bands; where there is no GPU it is noted.
@@ -210,12 +227,13 @@ fn time_frames(
     bands.dedup();
     let mut timed = Vec::new();
     let mut gpu = true;
+    let enough = bakes.reserved() / FRAMES_PART;
     for &n in bands.iter().filter(|&&n| n <= most) {
         bakes.tell("timing frames", u64::from(n), u64::from(most))?;
         let prt = frames::with_bands(&reference.prt, n);
-        timed.push(frames::on_cpu(&prt, request.environment)?);
+        timed.push(frames::on_cpu(&prt, request.environment, enough)?);
         if gpu {
-            match frames::on_gpu(&prt, request.environment) {
+            match frames::on_gpu(&prt, request.environment, enough) {
                 Ok(frames) => timed.push(frames),
                 Err(error) => {
                     left_out.push(format!("frames on a GPU: {error}"));
@@ -268,4 +286,34 @@ fn draw(
         });
     }
     Ok(views)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cost::{Effort, sample};
+
+    fn seconds_asked(asked: Option<usize>) -> Option<f64> {
+        let runs = sample::report().runs;
+        let predicted = Effort { seconds: 8.0, rays: 1e6 };
+        let check = |name: &str| Check { name: name.into(), predicted, came: None };
+        asked_seconds(&runs, asked, &[check("--error 0.01")], "--error 0.01")
+    }
+
+    /// The sample took 4 s as asked.
+    #[test]
+    fn goals_follow_from_the_bake_as_asked() {
+        let targets = Targets { error: 0.01, seconds: None, bytes: None };
+        let of = |asked| goals(targets, seconds_asked(asked).unwrap(), 1000);
+        assert_eq!(of(Some(1)), [Goal::Error(f64::from(0.01f32)), Goal::Seconds(1.0), Goal::Bytes(500)]);
+        assert_eq!(of(None)[1], Goal::Seconds(2.0), "a quarter of what was predicted");
+    }
+
+    /// What the user says stands, and without a prediction there is no number.
+    #[test]
+    fn goals_follow_from_the_bake_as_asked_can_fail() {
+        let said = Targets { error: 0.01, seconds: Some(7.0), bytes: Some(9) };
+        assert_eq!(goals(said, 4.0, 1000)[1..], [Goal::Seconds(7.0), Goal::Bytes(9)]);
+        assert_eq!(asked_seconds(&[], None, &[], "--error 0.01"), None);
+    }
 }

@@ -106,8 +106,29 @@ fn choose(request: &Request<'_>, base: &Settings, shadowed: f64, bakes: &Bakes<'
         let kept = !matches!(choice.quality, Quality::Rays(n) if bytes(n) > 0.5 * request.settings.memory as f64);
         kept && 2.0 * choice.predicted.seconds <= seconds
     };
-    let poorest = ladder[ladder.len() - 1].clone();
-    Ok(ladder.into_iter().find(fits).unwrap_or(poorest))
+    first_that_fits(&ladder, fits, |quality| bakes.predict(&Settings { quality, ..base.clone() }))
+}
+
+/// The first choice that fits; the last where none does.
+///
+/// An error level is predicted itself before it is taken: rays have a floor, which no power of the error knows.
+fn first_that_fits(
+    ladder: &[Choice; 10],
+    fits: impl Fn(&Choice) -> bool,
+    predict: impl Fn(Quality) -> Result<Effort, Error>,
+) -> Result<Choice, Error> {
+    let predicted = |choice: &Choice| match choice.quality {
+        Quality::Error(_) => Ok(Choice { predicted: predict(choice.quality)?, ..choice.clone() }),
+        Quality::Rays(_) => Ok::<_, Error>(choice.clone()),
+    };
+    let [better @ .., poorest] = ladder;
+    for choice in better.iter().filter(|choice| fits(choice)) {
+        let choice = predicted(choice)?;
+        if fits(&choice) {
+            return Ok(choice);
+        }
+    }
+    predicted(poorest)
 }
 
 /// The mean of two transfers of the same shape.
@@ -119,4 +140,40 @@ fn mean(a: &Transfer, b: &Transfer) -> Transfer {
 /// A number of bands that a bake has had.
 fn supported(bands: u32) -> Bands {
     Bands::new(bands).expect("bakes check the number of bands")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn effort(seconds: f64) -> Effort {
+        Effort { seconds, rays: 1e6 * seconds }
+    }
+
+    /// What is chosen of levels 1 to 10 that are reckoned to take 10 to 1 s, where none takes less than `floor` and 3.5 s
+    /// are left.
+    fn chosen(floor: f64) -> (Quality, Effort) {
+        let ladder = std::array::from_fn(|i| Choice {
+            quality: Quality::Error(i as f32 + 1.0),
+            words: String::new(),
+            predicted: effort(10.0 - i as f64),
+        });
+        let predict = |quality| match quality {
+            Quality::Error(e) => Ok(effort((11.0 - f64::from(e)).max(floor))),
+            Quality::Rays(_) => Err(Error::Cancelled),
+        };
+        let choice = first_that_fits(&ladder, |choice| choice.predicted.seconds <= 3.5, predict).unwrap();
+        (choice.quality, choice.predicted)
+    }
+
+    /// Where rays have a floor, what is told of the choice is the floor and not what was reckoned.
+    #[test]
+    fn the_reference_is_predicted_itself() {
+        assert_eq!(chosen(5.0), (Quality::Error(10.0), effort(5.0)));
+    }
+
+    #[test]
+    fn the_reference_is_predicted_itself_can_fail() {
+        assert_eq!(chosen(0.0), (Quality::Error(8.0), effort(3.0)), "without a floor the first that fits");
+    }
 }

@@ -13,8 +13,12 @@ pub(super) fn runs(report: &Report) -> String {
     let worst = report.runs.iter().map(|run| run.transfer.p95).fold(0.0, f64::max);
     let least = report.runs.iter().map(|run| run.transfer.p95).filter(|e| *e > 0.0).fold(worst, f64::min);
     let groups: String = Knob::ALL.iter().map(|&knob| group(report, knob, [least, worst])).collect();
+    let asked = match report.asked {
+        Some(_) => "The shaded row is the bake as asked",
+        None => "The bake as asked was left out",
+    };
     format!(
-        "<h2>Knob by knob</h2>\n<p>One knob is turned at a time. The shaded row is the bake as asked; &#9670; marks runs on the front \
+        "<h2>Knob by knob</h2>\n<p>One knob is turned at a time. {asked}; &#9670; marks runs on the front \
          of time. Bars are logarithmic.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>options</th><th>error, 95 %</th>\
          <th>median</th><th>worst</th><th>radiance</th><th>against {} bands</th><th>time</th><th>rays / receiver</th><th>bounces</th>\
          <th>bytes</th></tr></thead>\n{groups}</table></div>\n",
@@ -42,7 +46,7 @@ fn row(report: &Report, index: usize, [least, worst]: [f64; 2]) -> String {
     let p95 = run.transfer.p95;
     let part = if p95 > 0.0 && worst > least { (p95 / least).ln() / (worst / least).ln() } else { 0.0 };
     let width = 0.3 + part.clamp(0.0, 1.0) * (LONGEST_BAR - 0.3);
-    let class = match (index == report.shown, report.fast_front.contains(&index)) {
+    let class = match (report.asked == Some(index), report.fast_front.contains(&index)) {
         (true, true) => " class=\"asked front\"",
         (true, false) => " class=\"asked\"",
         (false, true) => " class=\"front\"",
@@ -69,7 +73,7 @@ fn options(run: &Run) -> String {
 }
 
 /// Visibility rays per receiver that something can shadow.
-fn rays(report: &Report, run: &Run) -> String {
+pub(super) fn rays(report: &Report, run: &Run) -> String {
     format!("{:.0}", run.rays[0] as f64 / report.receivers[1].max(1) as f64)
 }
 
@@ -125,8 +129,8 @@ pub(super) fn predictions(report: &Report) -> String {
     let rows: String = report.checks.iter().map(|check| prediction(report, check)).collect();
     format!(
         "<h2>Predicted and measured</h2>\n<p>Before a bake starts, a few hundred receivers in runs of neighbours, evenly drawn over the \
-         surfaces, are baked for trial on this machine; their time and rays are scaled to all receivers. {} Half of the reference is \
-         reckoned from trials at fewer rays.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>bake</th><th>predicted</th><th>came</th>\
+         surfaces, are baked for trial on this machine; their time and rays are scaled to all receivers. {} Half of a \
+         reference of so many rays is reckoned from a trial at fewer.</p>\n<div class=\"wide\"><table>\n<thead><tr><th>bake</th><th>predicted</th><th>came</th>\
          <th>predicted / came</th><th>rays predicted</th><th>rays traced</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n",
         honesty(report)
     )
@@ -140,15 +144,21 @@ fn honesty(report: &Report) -> String {
     match ratios[..] {
         [] => String::new(),
         [least, .., most] => {
-            let middle = ratios[ratios.len() / 2];
+            let middle = median(&ratios);
             format!("Here the predictions were {middle:.2} times what came (median; {least:.2} to {most:.2}).")
         }
         [only] => format!("Here the prediction was {only:.2} times what came."),
     }
 }
 
+/// The median of sorted values, of which there are some: the mean of the two in the middle where their number is even.
+fn median(sorted: &[f64]) -> f64 {
+    0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2])
+}
+
 fn prediction(report: &Report, check: &Check) -> String {
-    let class = if check.name == report.runs[report.shown].setting { " class=\"asked\"" } else { "" };
+    let asked = report.asked.is_some_and(|index| check.name == report.runs[index].setting);
+    let class = if asked { " class=\"asked\"" } else { "" };
     let [came, ratio, rays] = match &check.came {
         Some(came) => {
             let ratio = check.predicted.seconds / came.seconds;
@@ -192,4 +202,32 @@ pub(super) fn worst(report: &Report) -> String {
          <th>position, m</th><th>error</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n",
         escaped(&report.runs[report.shown].setting)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cost::sample;
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        assert_eq!([median(&[1.0]), median(&[1.0, 2.0]), median(&[1.0, 2.0, 4.0, 9.0])], [1.0, 1.5, 3.0]);
+        assert_eq!(median(&[1.0, 2.0, 9.0]), 2.0);
+    }
+
+    /// Run 1 of the sample is as asked.
+    #[test]
+    fn the_bake_as_asked_is_shaded() {
+        let text = runs(&sample::report());
+        assert!(text.contains("<tr class=\"asked\"><td><code>--error 0.01<"), "{text}");
+        assert!(text.contains("shaded row is"), "{text}");
+    }
+
+    /// Another bake takes its place in the pictures, not in the table.
+    #[test]
+    fn the_bake_as_asked_is_shaded_can_fail() {
+        let text = runs(&Report { asked: None, shown: 0, ..sample::report() });
+        assert!(!text.contains("asked\""), "{text}");
+        assert!(text.contains("was left out"), "{text}");
+    }
 }
