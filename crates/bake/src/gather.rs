@@ -88,7 +88,8 @@ impl Gatherer<'_> {
         let (mut out, step) = self.direct(receiver, index, worker);
         if out.openness < 1.0 {
             let origin = offset_origin(receiver.position, receiver.geometric_normal);
-            self.trace_blockers(origin, self.bank.pick(index).0, step, worker, &mut out);
+            let most = if index < self.permanent { MAX_BLOCKERS } else { HELPER_BLOCKERS };
+            self.trace_blockers(origin, self.bank.pick(index).0, step, most, worker, &mut out);
             self.pack(self.bank.pick(index).0, index, worker, &mut out);
         }
         out
@@ -224,9 +225,17 @@ impl Gatherer<'_> {
     }
 
     /// Finds the nearest surface along blocked directions: \[G\] eq. (11) gathers over these only.
-    fn trace_blockers(&self, origin: Vec3, set: &DirectionSet, step: usize, worker: &mut Worker, out: &mut Gathered) {
+    fn trace_blockers(
+        &self,
+        origin: Vec3,
+        set: &DirectionSet,
+        step: usize,
+        most: usize,
+        worker: &mut Worker,
+        out: &mut Gathered,
+    ) {
         let end = set.steps[step].end;
-        out.bounce_rays = self.choose(end, worker);
+        out.bounce_rays = self.choose(end, most, worker);
         worker.nearest.clear();
         worker.nearest.resize(end, None);
         let [xs, ys, zs] = &worker.directions;
@@ -237,11 +246,11 @@ impl Gatherer<'_> {
 
     /// Picks the blocked directions whose blockers are looked up: all of them, or an even part where there are very many or only
     /// a probe is wanted. Returns their number.
-    fn choose(&self, end: usize, worker: &mut Worker) -> u64 {
+    fn choose(&self, end: usize, most: usize, worker: &mut Worker) -> u64 {
         let wanted = match self.quality {
             _ if !self.hits => PROBES,
             Quality::Rays(_) => end,
-            Quality::Error(_) => MAX_BLOCKERS,
+            Quality::Error(_) => most,
         };
         let blocked: usize = worker.blocked.iter().map(|&b| b as usize).sum();
         worker.wanted.clear();
@@ -286,6 +295,8 @@ impl Gatherer<'_> {
 const PROBES: usize = 32;
 /// Most blockers looked up for bounces.
 const MAX_BLOCKERS: usize = 1024;
+/// The same for receivers that only lend light to others: many together make up what one of those sees.
+const HELPER_BLOCKERS: usize = 256;
 
 /// What the any-hit rays found, in the local frame.
 struct Seen {

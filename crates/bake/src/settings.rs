@@ -26,7 +26,8 @@ pub fn standard() -> Settings {
         effects: Effects::Auto,
         sampler: Sampler::OwenSobol,
         seed: 0,
-        memory: 4 << 30,
+        // Sponza with all bounces keeps about 5 GiB.
+        memory: 6 << 30,
     }
 }
 
