@@ -14,15 +14,10 @@ fn gpu() -> Option<Gpu> {
             panic!("RELUME_REQUIRE_GPU=1 but {error}")
         }
         Err(_) => {
-            say_skipped();
+            testkit::say_skipped("drawing with a software driver (no adapter)");
             None
         }
     }
-}
-
-#[expect(clippy::print_stderr, reason = "a skipped test must be seen in the test log")]
-fn say_skipped() {
-    eprintln!("skipped: no adapter");
 }
 
 /// The functions without bindings, and those of the view.

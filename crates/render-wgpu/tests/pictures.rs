@@ -18,15 +18,10 @@ fn gpu() -> Option<Gpu> {
             panic!("RELUME_REQUIRE_GPU=1 but {error}")
         }
         Err(_) => {
-            say_skipped();
+            testkit::say_skipped("drawing with a software driver (no adapter)");
             None
         }
     }
-}
-
-#[expect(clippy::print_stderr, reason = "a skipped test must be seen in the test log")]
-fn say_skipped() {
-    eprintln!("skipped: no adapter");
 }
 
 /// A pixel is far when a display channel differs by more than this many steps of 255: texture filters of GPUs

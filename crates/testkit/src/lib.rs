@@ -7,7 +7,7 @@ pub mod quadrature;
 mod special;
 pub mod ttest;
 
-pub use data::{data_dir, skip};
+pub use data::{data_dir, say_skipped, skip};
 
 /// Whether `a` and `b` differ by at most `abs + rel * max(|a|, |b|)`; false for NaN.
 #[must_use]
