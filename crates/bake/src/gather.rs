@@ -164,6 +164,9 @@ impl Gatherer<'_> {
             seen.local = self.corrected(&sums, seen.openness, step);
             match rule.look(&mut progress, step.end as u32, &seen.local) {
                 Verdict::Continue { .. } => {}
+                // Too few rays to tell so small an error, whatever they met.
+                Verdict::Reached { .. }
+                    if self.resolution(seen.rays) > rule.tolerance && start < rule.last as usize => {}
                 Verdict::Reached { error } | Verdict::Exhausted { error } => {
                     seen.error = if error.is_finite() {
                         error.max(self.resolution(seen.rays)) / self.bank.open_norm

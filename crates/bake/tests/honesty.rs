@@ -48,6 +48,17 @@ fn what_is_spent_is_told() {
     assert!(exceeding(&zero, 2.5) > 0.9, "the check sees estimates of zero");
 }
 
+/// What is told is no more than what was asked for, where the directions suffice: also where few rays met all the same.
+#[test]
+fn what_is_asked_is_told() {
+    let scene = scene::builtin("atrium").expect("a builtin");
+    for asked in [0.02, 0.004] {
+        let seen = sample(&scene, &settings(Quality::Error(asked), 1), 60).expect("the scene bakes");
+        let largest = seen.iter().filter(|one| one.rays < 8192).map(|one| one.error).fold(0.0, f32::max);
+        assert!(largest > 0.0 && largest <= asked, "told {largest}, asked for {asked}");
+    }
+}
+
 /// Pairs of true and estimated error over receivers and seeds.
 fn pairs(scene: &Scene, asked: f32) -> Vec<[f64; 2]> {
     let truth = sample(scene, &settings(Quality::Rays(TRUTH), 1000), RECEIVERS).expect("the scene bakes");

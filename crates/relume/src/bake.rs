@@ -5,9 +5,9 @@ use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
-use crate::{interrupt, output, timed};
+use crate::{interrupt, output, settings, timed};
 use anyhow::{Context, Result};
-use coeff_io::{Prt, Quality};
+use coeff_io::{Prt, Quality, Settings};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -31,6 +31,10 @@ pub(crate) struct Options {
     output: PathBuf,
     #[command(flatten)]
     bake: BakeOptions,
+    /// The least error within a time: seconds, or 30s, 5m, 2h. Bakes from coarse to fine; the file is there after the first, coarse
+    /// result and holds the finest one that was finished in time.
+    #[arg(long, value_name = "T", conflicts_with_all = ["error", "rays"], value_parser = settings::seconds)]
+    time: Option<f32>,
     /// The light that the result is meant for: with --bands auto, bands that it cannot show are left out.
     #[arg(long, value_name = "PROBE", value_parser = source::probe)]
     probe: Option<ProbeSource>,
@@ -40,7 +44,8 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
-    let settings = options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))?;
+    let settings =
+        Settings { time: options.time, ..options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))? };
     output::check(&options.output)?;
     let scene = options.scene.load(console)?;
     interrupt::watch()?;

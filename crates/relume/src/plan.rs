@@ -5,7 +5,6 @@ use crate::console::Console;
 use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
-use crate::usage::Usage;
 use anyhow::Result;
 use bake::Price;
 use coeff_io::{Effect, Plan, PlanRow, Settings};
@@ -54,10 +53,6 @@ pub(crate) struct Options {
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
-    if options.bake.is_timed() {
-        let what = "plan tells the time of a bake, so it takes no --time: give --error or --rays";
-        return Err(Usage(what.into()).into());
-    }
     let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
     let settings = options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))?;
     let scene = options.scene.load(console)?;

@@ -19,10 +19,6 @@ pub(crate) struct BakeOptions {
     /// most, and the file says what was reached.
     #[arg(long, value_name = "E")]
     error: Option<f32>,
-    /// The least error within a time: seconds, or 30s, 5m, 2h. Bakes from coarse to fine; the file is there after the first, coarse
-    /// result and holds the finest one that was finished in time.
-    #[arg(long, value_name = "T", conflicts_with_all = ["error", "rays"], value_parser = seconds)]
-    time: Option<f32>,
     /// How often light may bounce: a number, or auto for until it changes nothing.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = bounces)]
     bounces: Bounces,
@@ -98,11 +94,6 @@ impl BakeOptions {
         self.bands.count
     }
 
-    /// Whether the bake is told how long it may take.
-    pub(crate) fn is_timed(&self) -> bool {
-        self.time.is_some()
-    }
-
     /// The settings that these options stand for, with the norms of the bands of a light where one is known.
     pub(crate) fn settings(&self, light: &[f32]) -> Result<Settings> {
         if self.storage == Storage::Texture {
@@ -115,7 +106,7 @@ impl BakeOptions {
             band_choice: self.bands.choice,
             light: light.to_vec(),
             quality: self.rays.map(Quality::Rays).or(self.error.map(Quality::Error)).unwrap_or(standard.quality),
-            time: self.time,
+            time: None,
             bounces: self.bounces,
             refine: self.refine,
             effects: self.effects.clone(),
@@ -180,7 +171,8 @@ fn effect(name: &str) -> Result<Effect, String> {
 /// Most seconds that may be asked for: far beyond any bake, and small enough to count with.
 const MOST_SECONDS: f32 = 30.0 * 24.0 * 3600.0;
 
-fn seconds(text: &str) -> Result<f32, String> {
+/// Parses a time in seconds, minutes or hours.
+pub(crate) fn seconds(text: &str) -> Result<f32, String> {
     let (digits, unit) = match text.char_indices().next_back() {
         Some((at, 's')) => (&text[..at], 1.0),
         Some((at, 'm')) => (&text[..at], 60.0),

@@ -65,7 +65,7 @@ fn wrong_usage_ends_with_2_and_a_reason() {
             &["reference", "builtin:plane", "--probe", "builtin:sky", "-o", "a.exr", "--window", "auto"],
             "--light bands:N",
         ),
-        (&["plan", "builtin:plane", "--time", "5m"], "--error"),
+        (&["plan", "builtin:plane", "--time", "5m"], "--time"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--time", "1e30h"], "30 days"),
         (&["light", "builtin:sky", "--bands", "1000", "-o", "a.npy"], "129"),
         (&["light", "builtin:nothing", "-o", "a.npy"], "sky"),
