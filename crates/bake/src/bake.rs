@@ -286,7 +286,7 @@ impl Wanted {
         if back_share(&seen.hits) <= self.worth {
             return;
         }
-        for source in seen.hits.iter().filter(|hit| hit.is_back()).map(|hit| hit.source()) {
+        for source in seen.hits.iter().filter(|hit| hit.is_back).map(|hit| hit.source) {
             if let Source::Triangle(triangle) = source {
                 self.backs.insert(triangle);
             }
@@ -306,7 +306,7 @@ impl Wanted {
 
 /// Share of a receiver's light that the backs it sees send on at most.
 fn back_share(hits: &[PackedHit]) -> f32 {
-    let backs = hits.iter().filter(|hit| hit.is_back());
+    let backs = hits.iter().filter(|hit| hit.is_back);
     backs.map(|hit| hit.reflected.into_iter().fold(0.0, f32::max)).sum()
 }
 

@@ -88,9 +88,9 @@ impl Gatherer<'_> {
         let (mut out, step) = self.direct(receiver, index, worker);
         if out.openness < 1.0 {
             let origin = offset_origin(receiver.position, receiver.geometric_normal);
-            let most = if index < self.permanent { MAX_BLOCKERS } else { HELPER_BLOCKERS };
-            self.trace_blockers(origin, self.bank.pick(index).0, step, most, worker, &mut out);
-            self.pack(self.bank.pick(index).0, index, worker, &mut out);
+            let (set, _) = self.bank.pick(index);
+            out.bounce_rays = self.trace_blockers(origin, set.steps[step].end, index, worker);
+            self.pack(set, index, worker, &mut out);
         }
         out
     }
@@ -227,33 +227,27 @@ impl Gatherer<'_> {
         rays as u64
     }
 
-    /// Finds the nearest surface along blocked directions: \[G\] eq. (11) gathers over these only.
-    fn trace_blockers(
-        &self,
-        origin: Vec3,
-        set: &DirectionSet,
-        step: usize,
-        most: usize,
-        worker: &mut Worker,
-        out: &mut Gathered,
-    ) {
-        let end = set.steps[step].end;
-        out.bounce_rays = self.choose(end, most, worker);
+    /// Finds the nearest surface along blocked ones of the first `end` directions: \[G\] eq. (11) gathers over these only. Returns
+    /// the number of rays.
+    fn trace_blockers(&self, origin: Vec3, end: usize, index: u32, worker: &mut Worker) -> u64 {
+        let rays = self.choose(end, index, worker);
         worker.nearest.clear();
         worker.nearest.resize(end, None);
         let [xs, ys, zs] = &worker.directions;
         let solid = |triangle, u, v| self.world.solid(triangle, u, v);
         let tracer = &self.world.tracer;
         tracer.closest_fan(origin, xs, ys, zs, &worker.wanted, &solid, &mut worker.fan, &mut worker.nearest);
+        rays
     }
 
     /// Picks the blocked directions whose blockers are looked up: all of them, or an even part where there are very many or only
     /// a probe is wanted. Returns their number.
-    fn choose(&self, end: usize, most: usize, worker: &mut Worker) -> u64 {
+    fn choose(&self, end: usize, index: u32, worker: &mut Worker) -> u64 {
         let wanted = match self.quality {
             _ if !self.hits => PROBES,
             Quality::Rays(_) => end,
-            Quality::Error(_) => most,
+            Quality::Error(_) if index < self.permanent => MAX_BLOCKERS,
+            Quality::Error(_) => HELPER_BLOCKERS,
         };
         let blocked: usize = worker.blocked.iter().map(|&b| b as usize).sum();
         worker.wanted.clear();

@@ -18,25 +18,14 @@ pub(crate) struct NearPoint {
 /// A point that a receiver sees, with its share of the receiver's cosine-weighted hemisphere.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PackedHit {
-    /// Traced triangle, or number among the receiver's near points; see the bits.
-    source: u32,
+    /// What sends the light on.
+    pub(crate) source: Source,
+    /// Whether the back of a surface was hit for which no near point stands.
+    pub(crate) is_back: bool,
     /// Barycentrics of the second and third corner.
     pub(crate) barycentrics: [f32; 2],
     /// Weight times albedo, RGB.
     pub(crate) reflected: [f32; 3],
-}
-
-impl PackedHit {
-    /// Whether the back of a triangle was hit.
-    pub(crate) fn is_back(&self) -> bool {
-        self.source & BACK != 0
-    }
-
-    /// What sends the light on.
-    pub(crate) fn source(&self) -> Source {
-        let number = self.source & !(BACK | NEAR);
-        if self.source & NEAR != 0 { Source::Near(number) } else { Source::Triangle(number) }
-    }
 }
 
 /// What sends light on to a receiver.
@@ -48,17 +37,12 @@ pub(crate) enum Source {
     Near(u32),
 }
 
-/// Bit of [`PackedHit::source`] for the back of a triangle.
-const BACK: u32 = 1 << 31;
-/// Bit of [`PackedHit::source`] for a near point.
-const NEAR: u32 = 1 << 30;
-
 /// A hit that refers to the near point on its side of its triangle where there is one.
 pub(crate) fn packed(hit: &Hit, reflected: Vec3, near: &[NearPoint]) -> PackedHit {
-    let side = if hit.front { 0 } else { BACK };
     let found = near.binary_search_by_key(&(hit.triangle, hit.front), |point| (point.triangle, point.front));
     PackedHit {
-        source: found.map_or(hit.triangle | side, |index| index as u32 | NEAR),
+        source: found.map_or(Source::Triangle(hit.triangle), |index| Source::Near(index as u32)),
+        is_back: found.is_err() && !hit.front,
         barycentrics: [hit.u, hit.v],
         reflected: reflected.to_array(),
     }

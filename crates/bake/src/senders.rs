@@ -67,10 +67,10 @@ impl Senders {
 pub(crate) fn fill_row(world: &World<'_>, hits: &[PackedHit], row: &mut Vec<Sender>) {
     row.clear();
     for hit in hits {
-        match hit.source() {
+        match hit.source {
             Source::Near(index) => row.push(Sender { key: index | NEAR, weight: hit.reflected }),
             Source::Triangle(triangle) => {
-                let side = if hit.is_back() { BACK } else { 0 };
+                let side = if hit.is_back { BACK } else { 0 };
                 let [u, v] = hit.barycentrics;
                 for (corner, share) in world.corners[triangle as usize].into_iter().zip([1.0 - u - v, u, v]) {
                     row.push(Sender { key: corner | side, weight: hit.reflected.map(|x| x * share) });
