@@ -4,9 +4,9 @@
 use glam::{DVec3, Vec3};
 use sh_math::hemisphere::Basis;
 use sh_math::{Bands, Rgb, evaluate_f64};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::PI;
 use testkit::assert_close;
-use testkit::quadrature::sphere_quadrature;
+use testkit::quadrature::{hemisphere_tanh_sinh, sphere_quadrature};
 
 fn bands() -> Bands {
     Bands::new(3).expect("3 bands exist")
@@ -24,24 +24,9 @@ fn values(basis: Basis, direction: DVec3) -> Vec<f64> {
     out
 }
 
-/// Directions and weights of the hemisphere by the tanh-sinh rule in `z`: roots at the ends of the interval do not
-/// trouble it, and it shares nothing with Gauss.
-fn tanh_sinh() -> Vec<(DVec3, f64)> {
-    let step = 1.0 / 16.0;
-    let mut points = Vec::new();
-    for k in -60..=60 {
-        let s = step * f64::from(k);
-        let inner = FRAC_PI_2 * s.sinh();
-        // z = (1 + tanh) / 2, written so that it stays exact next to 0
-        let z = 1.0 / (1.0 + (-2.0 * inner).exp());
-        let weight = step * 0.5 * FRAC_PI_2 * s.cosh() / inner.cosh().powi(2) * TAU / 16.0;
-        for j in 0..16 {
-            let phi = TAU * f64::from(j) / 16.0;
-            let radius = (1.0 - z * z).max(0.0).sqrt();
-            points.push((DVec3::new(radius * phi.cos(), radius * phi.sin(), z), weight));
-        }
-    }
-    points
+/// The hemisphere by a rule that shares nothing with Gauss.
+fn tanh_sinh() -> impl Iterator<Item = (DVec3, f64)> {
+    hemisphere_tanh_sinh().into_iter().map(|(direction, weight)| (DVec3::from(direction), weight))
 }
 
 /// `int_hemisphere B_i Y_j`, `[i][j]`.
@@ -198,7 +183,7 @@ fn projected_irradiance_is_the_conversion() {
         (d, [0, 1, 2].map(|c| w * (0..9).map(|i| y[i] * f64::from(signal.values[i][c])).sum::<f64>()))
     };
     for basis in Basis::ALL {
-        let projected = basis.project_irradiance(tanh_sinh().into_iter().map(sample));
+        let projected = basis.project_irradiance(tanh_sinh().map(sample));
         let converted = basis.conversion().apply(&signal);
         for (a, b) in projected.as_flattened().iter().zip(converted.as_flattened()) {
             assert_close!(*a, *b, 1e-6, 1e-6, "{}", basis.name());

@@ -4,10 +4,10 @@ use glam::DVec3;
 use sampling::rng::Rng;
 use sh_math::hemisphere::Basis;
 use sh_math::{Bands, evaluate_f64, zonal};
-use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::OnceLock;
 use study::bases::{Entry, Fit, SIGNALS, Settings, Study, study};
 use testkit::assert_close;
+use testkit::quadrature::hemisphere_tanh_sinh;
 
 /// The study with the settings of the paper, made once.
 fn paper() -> &'static Study {
@@ -91,30 +91,13 @@ fn invariants_hold_for_every_signal() {
     }
 }
 
-/// Directions and weights of the hemisphere by the tanh-sinh rule in `z`, which roots at the ends of the interval do not
-/// trouble. Gauss points in `z` would: 48 of them leave the error of HSH 9 wrong in the fourth digit.
-fn tanh_sinh() -> Vec<(DVec3, f64)> {
-    let step = 1.0 / 16.0;
-    let mut points = Vec::new();
-    for k in -60..=60 {
-        let s = step * f64::from(k);
-        let inner = FRAC_PI_2 * s.sinh();
-        let z = 1.0 / (1.0 + (-2.0 * inner).exp());
-        let weight = step * 0.5 * FRAC_PI_2 * s.cosh() / inner.cosh().powi(2) * TAU / 16.0;
-        let radius = (1.0 - z * z).max(0.0).sqrt();
-        let direction = |phi: f64| DVec3::new(radius * phi.cos(), radius * phi.sin(), z);
-        points.extend((0..16).map(|j| (direction(TAU * f64::from(j) / 16.0), weight)));
-    }
-    points
-}
-
 /// The average as eq. 3.1 has it, without the study's quadratic form: for each signal coefficients, reconstruction, integral.
 #[test]
 fn averages_equal_the_plain_integral() {
     const FEW: u32 = 40;
     let small = study(Settings { signals: FEW, seed: 9 });
     let bands = Bands::new(3).expect("3 bands exist");
-    let rule = tanh_sinh();
+    let rule = hemisphere_tanh_sinh();
     for basis in [Basis::Hsh9, Basis::Makhotkin4, Basis::Zernike6, Basis::ModifiedH6, Basis::Hl2] {
         let conversion = basis.conversion();
         let mut total = 0.0;
@@ -125,6 +108,7 @@ fn averages_equal_the_plain_integral() {
             let dot = |row: &[f64]| row.iter().zip(&signal).map(|(a, b)| a * b).sum::<f64>();
             let coefficients: Vec<f64> = conversion.rows.iter().map(|row| dot(row)).collect();
             for &(direction, weight) in &rule {
+                let direction = DVec3::from(direction);
                 let (mut truth, mut values) = ([0.0; 9], [0.0; 9]);
                 evaluate_f64(bands, direction, &mut truth);
                 basis.evaluate_f64(direction, &mut values);

@@ -1,6 +1,7 @@
-//! Gauss-Legendre points and a product rule on the sphere: oracles for integrals of smooth functions.
+//! Gauss-Legendre points and a product rule on the sphere: oracles for integrals of smooth functions; and a rule for those that
+//! are not smooth at the rim of the hemisphere.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Nodes and weights of the `n`-point rule on [-1, 1], exact for polynomials of degree `2n - 1`.
 #[must_use]
@@ -32,6 +33,29 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
         (previous, current) = (current, ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k);
     }
     (current, n as f64 * (x * current - previous) / (x * x - 1.0))
+}
+
+/// Unit directions of the hemisphere above `z = 0` with weights that sum to 2 pi, by the tanh-sinh rule in z times 16 equal steps in
+/// longitude.
+///
+/// Roots at the ends of the interval do not trouble it, as they do Gauss points in z, and it shares nothing with them.
+#[must_use]
+pub fn hemisphere_tanh_sinh() -> Vec<([f64; 3], f64)> {
+    let step = 1.0 / 16.0;
+    let mut points = Vec::new();
+    for k in -60..=60 {
+        let s = step * f64::from(k);
+        let inner = FRAC_PI_2 * libm::sinh(s);
+        // z = (1 + tanh) / 2, written so that it stays exact next to 0
+        let z = 1.0 / (1.0 + libm::exp(-2.0 * inner));
+        let weight = step * 0.5 * FRAC_PI_2 * libm::cosh(s) / libm::cosh(inner).powi(2) * TAU / 16.0;
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        points.extend((0..16).map(|j| {
+            let (sin, cos) = libm::sincos(TAU * f64::from(j) / 16.0);
+            ([r * cos, r * sin, z], weight)
+        }));
+    }
+    points
 }
 
 /// Unit directions with weights that sum to 4 pi; exact for spherical harmonics of degree `2n - 1`.
