@@ -37,7 +37,7 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let folder = &options.output;
-    check(folder)?;
+    output::check_all(folder, &FILES)?;
     let study = study::bases::study(Settings { signals: options.signals, seed: options.seed });
     let (svg, picture) = (study.svg()?, study.picture()?);
     let [table, drawing, pixels] = FILES.map(|name| folder.join(name));
@@ -47,13 +47,6 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     console.print(&study.text())?;
     console.notice(&format!("wrote bases.csv, bases.svg and bases.png into {}", folder.display()));
     Ok(())
-}
-
-/// Makes the folder, and fails where one of the files cannot be written there.
-fn check(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("cannot make the folder {}: choose another, or make room for it", folder.display()))?;
-    FILES.iter().try_for_each(|name| output::check(&folder.join(name)))
 }
 
 fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
@@ -76,7 +69,10 @@ mod tests {
         for name in FILES {
             let folder = tempfile::tempdir().unwrap();
             std::fs::create_dir(folder.path().join(name)).unwrap();
-            assert!(check(folder.path()).is_err_and(|error| error.to_string().contains(name)), "{name}");
+            assert!(
+                output::check_all(folder.path(), &FILES).is_err_and(|error| error.to_string().contains(name)),
+                "{name}"
+            );
         }
     }
 
@@ -85,6 +81,6 @@ mod tests {
     fn every_file_is_checked_before_can_fail() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("bases.txt")).unwrap();
-        assert!(check(folder.path()).is_ok());
+        assert!(output::check_all(folder.path(), &FILES).is_ok());
     }
 }

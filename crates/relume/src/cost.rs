@@ -6,9 +6,8 @@ use crate::usage::Usage;
 use crate::{interrupt, output, settings};
 use anyhow::{Context, Result};
 use coeff_io::{Settings, replace};
-use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use study::cost::report::{Machine, Run};
 use study::cost::{Error, Goal, Report, Request, Targets, csv, page, plots};
 use study::plot::chart::{Chart, Unit};
@@ -67,7 +66,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let settings = options.settings()?;
     let scene = options.scene.load(console)?;
     let environment = options.probe.load(console)?;
-    check(&options.output)?;
+    output::check_all(&options.output, &FILES)?;
     interrupt::watch()?;
     let targets = Targets { error: options.target_error, seconds: options.target_time, bytes: options.target_size };
     let request = Request {
@@ -129,12 +128,6 @@ fn some_bytes(text: &str) -> Result<u64, String> {
         0 => Err("no bake fits into 0 bytes: give a size such as 8M".into()),
         bytes => Ok(bytes),
     }
-}
-
-/// Makes the folder, and fails where one of the files cannot be written there: the study must not be lost to that.
-fn check(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    FILES.iter().try_for_each(|name| output::check(&folder.join(name)))
 }
 
 fn machine() -> Machine {
@@ -207,6 +200,7 @@ fn achieved(goal: Goal, run: &Run, kept: f64, bands: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
     use study::cost::{Spread, report::Knob};
 
     #[test]
@@ -219,11 +213,14 @@ mod tests {
     #[test]
     fn every_file_is_checked_before() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(check(&folder.path().join("new")).is_ok());
+        assert!(output::check_all(&folder.path().join("new"), &FILES).is_ok());
         for name in FILES {
             let folder = tempfile::tempdir().unwrap();
             fs::create_dir(folder.path().join(name)).unwrap();
-            assert!(check(folder.path()).is_err_and(|error| error.to_string().contains(name)), "{name}");
+            assert!(
+                output::check_all(folder.path(), &FILES).is_err_and(|error| error.to_string().contains(name)),
+                "{name}"
+            );
         }
     }
 
@@ -232,7 +229,7 @@ mod tests {
     fn every_file_is_checked_before_can_fail() {
         let folder = tempfile::tempdir().unwrap();
         fs::create_dir(folder.path().join("cost.txt")).unwrap();
-        assert!(check(folder.path()).is_ok());
+        assert!(output::check_all(folder.path(), &FILES).is_ok());
     }
 
     /// Two bands are exact in their own bands and leave out a tenth of the light.

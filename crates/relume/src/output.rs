@@ -1,7 +1,15 @@
 //! Whether a result can be written, asked before long work begins.
 
 use anyhow::{Context, Result, bail};
+use std::fs;
 use std::path::Path;
+
+/// Makes a folder, and fails where one of the files of those names cannot be made in it.
+pub(crate) fn check_all(folder: &Path, names: &[&str]) -> Result<()> {
+    fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make the folder {}: choose another, or make room for it", folder.display()))?;
+    names.iter().try_for_each(|name| check(&folder.join(name)))
+}
 
 /// Fails where no file can be made at `path`.
 pub(crate) fn check(path: &Path) -> Result<()> {

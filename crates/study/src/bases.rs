@@ -18,6 +18,7 @@ pub use invariant::Invariant;
 pub use plot::{Picture, PlotError};
 
 use entry::{Loss, NINE, TWENTY_FIVE};
+use sampling::estimate::Replicates;
 use sampling::rng::Rng;
 use sh_math::hemisphere::Basis;
 
@@ -117,27 +118,25 @@ pub fn study(settings: Settings) -> Study {
     assert!(settings.signals >= 2, "a spread needs two signals");
     let entries = Entry::all();
     let losses: Vec<Loss<NINE>> = entries.iter().map(|entry| entry.loss()).collect();
-    let mut sums = vec![Sum::default(); entries.len()];
+    let mut replicates = Replicates::default();
     let mut invariants = Invariant::all();
     let mut errors = vec![0.0; entries.len()];
     for number in 0..settings.signals {
         let signal = signal(settings.seed, number);
-        for ((error, loss), sum) in errors.iter_mut().zip(&losses).zip(&mut sums) {
-            *error = loss.of(&signal);
-            sum.add(*error);
-        }
+        errors.iter_mut().zip(&losses).for_each(|(error, loss)| *error = loss.of(&signal));
+        replicates.add(&errors);
         let error = |entry| entries.iter().position(|e| *e == entry).map_or(f64::NAN, |i| errors[i]);
         invariants.iter_mut().for_each(|invariant| invariant.check(error));
     }
     let times = timing::nanoseconds();
-    let row = |((entry, loss), sum): ((&Entry, &Loss<NINE>), &Sum)| Row {
+    let row = |((entry, loss), imse): ((&Entry, &Loss<NINE>), Average)| Row {
         entry: *entry,
-        imse: sum.average(),
+        imse,
         expected: loss.expectation(),
         printed: entry.printed(),
         nanoseconds: Basis::ALL.iter().position(|basis| *basis == entry.basis).map_or(f64::NAN, |i| times[i]),
     };
-    let rows = entries.iter().zip(&losses).zip(&sums).map(row).collect();
+    let rows = entries.iter().zip(&losses).zip(averages(&replicates)).map(row).collect();
     Study { settings, rows, eleventh: eleventh(settings), invariants }
 }
 
@@ -145,39 +144,20 @@ pub fn study(settings: Settings) -> Study {
 fn eleventh(settings: Settings) -> Eleventh {
     let measure = |fit| {
         let loss: Loss<TWENTY_FIVE> = Entry { basis: Basis::Sh9, fit }.loss();
-        let mut sum = Sum::default();
-        (0..settings.signals).for_each(|number| sum.add(loss.of(&signal(settings.seed, number))));
-        (sum.average(), loss.expectation())
+        let mut replicates = Replicates::default();
+        (0..settings.signals).for_each(|number| replicates.add(&[loss.of(&signal(settings.seed, number))]));
+        (averages(&replicates)[0], loss.expectation())
     };
     Eleventh { printed: entry::PRINTED_SH_9, fitted: measure(Fit::LeastSquares), cut: measure(Fit::Cut) }
+}
+
+fn averages(replicates: &Replicates) -> Vec<Average> {
+    let pairs = replicates.mean().iter().zip(replicates.std_error());
+    pairs.map(|(&mean, standard_error)| Average { mean, standard_error }).collect()
 }
 
 /// Radiance coefficients of signal `number`: uniform in [-1, 1], a stream of its own for each.
 fn signal<const N: usize>(seed: u64, number: u32) -> [f64; N] {
     let mut random = Rng::new(seed, u64::from(number));
     std::array::from_fn(|_| 2.0 * random.next_f64() - 1.0)
-}
-
-/// What an average needs to know of its numbers.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sum {
-    count: f64,
-    mean: f64,
-    /// Sum of the squares of the distances from the mean.
-    spread: f64,
-}
-
-impl Sum {
-    /// Welford's update: no difference of large sums.
-    fn add(&mut self, value: f64) {
-        self.count += 1.0;
-        let before = value - self.mean;
-        self.mean += before / self.count;
-        self.spread += before * (value - self.mean);
-    }
-
-    fn average(&self) -> Average {
-        let variance = self.spread / (self.count - 1.0);
-        Average { mean: self.mean, standard_error: (variance / self.count).sqrt() }
-    }
 }

@@ -2,4 +2,5 @@
 
 pub mod bases;
 pub mod cost;
+mod front;
 pub mod plot;

@@ -1,6 +1,7 @@
 //! The study as one picture: error against time and error against bytes, side by side.
 
 use super::{Fit, Row, Study, label};
+use crate::front::front as pareto;
 use crate::plot::font;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -133,17 +134,13 @@ fn is_hollow(row: &Row) -> bool {
 
 /// The points that no other beats in both cost and error, as steps.
 fn front(rows: &[Row], cost: impl Fn(&Row) -> f64) -> Vec<(f64, f64)> {
-    let mut points: Vec<(f64, f64)> = rows.iter().map(|row| (cost(row), row.imse.mean)).collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let points: Vec<[f64; 2]> = rows.iter().map(|row| [cost(row), row.imse.mean]).collect();
     let mut steps: Vec<(f64, f64)> = Vec::new();
-    for point in points {
-        let Some(last) = steps.last().copied() else {
-            steps.push(point);
-            continue;
-        };
-        if point.1 < last.1 {
-            steps.extend([(point.0, last.1), point]);
+    for [price, error] in pareto(&points).into_iter().map(|i| points[i]) {
+        if let Some(&(_, last)) = steps.last() {
+            steps.push((price, last));
         }
+        steps.push((price, error));
     }
     steps
 }
