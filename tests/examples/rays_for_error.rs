@@ -15,9 +15,9 @@ use std::error::Error;
 use std::path::Path;
 
 /// Receivers looked at in each scene.
-const RECEIVERS: usize = 120;
+const RECEIVERS: usize = 360;
 /// Errors asked of the adaptive bake.
-const ASKED: [f32; 2] = [0.02, 0.01];
+const ASKED: [f32; 3] = [0.02, 0.01, 0.008];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let names: Vec<String> = std::env::args().skip(1).collect();
@@ -63,7 +63,7 @@ impl Curves {
         let judge = |sampler, quality| -> Result<Judged, bake::Error> {
             Ok(Judged::of(&look(scene, sampler, quality, 1)?, &truth))
         };
-        let fixed = |sampler| (7..=15).map(|power| judge(sampler, Quality::Rays(1 << power))).collect::<Result<_, _>>();
+        let fixed = |sampler| (7..=16).map(|power| judge(sampler, Quality::Rays(1 << power))).collect::<Result<_, _>>();
         let asked = ASKED.map(|error| judge(Sampler::OwenSobol, Quality::Error(error)));
         Ok(Self {
             asked: asked.into_iter().collect::<Result<_, _>>()?,

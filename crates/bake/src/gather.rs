@@ -189,7 +189,7 @@ impl Gatherer<'_> {
             Quality::Rays(_) => 0.0,
         };
         let last = set.steps.last().map_or(0, |step| step.end as u32);
-        Doubling { first: 0, last, tolerance, confirmation: 2.0 }
+        Doubling { first: 0, last, tolerance, confirmation: 2.0, memory: REMEMBERED }
     }
 
     /// Half of what a single ray would change if all counted the same: no estimate is below it, since where all rays of two looks
@@ -294,6 +294,9 @@ const PROBES: usize = 32;
 const MAX_BLOCKERS: usize = 1024;
 /// The same for receivers that only lend light to others: many together make up what one of those sees.
 const HELPER_BLOCKERS: usize = 256;
+
+/// Changes of the estimate that count for its error. More would lean on how errors fell when the directions were few.
+const REMEMBERED: usize = 4;
 
 /// What the any-hit rays found, in the local frame.
 struct Seen {

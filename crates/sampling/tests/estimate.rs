@@ -3,7 +3,7 @@
 use sampling::estimate::{Doubling, Replicates, Verdict};
 use testkit::assert_close;
 
-const RULE: Doubling = Doubling { first: 64, last: 1000, tolerance: 0.1, confirmation: f64::INFINITY };
+const RULE: Doubling = Doubling { first: 64, last: 1000, tolerance: 0.1, confirmation: f64::INFINITY, memory: 1 };
 
 /// Feeds one-number estimates until the rule stops; counts and the last verdict.
 fn run(rule: &Doubling, estimates: &[f64]) -> (Vec<u32>, Verdict) {
@@ -32,6 +32,29 @@ fn two_passes_ask_for_confirmation() {
     let (counts, verdict) = run(&rule, &[1.0, 0.95, 0.5, 0.52, 0.53]);
     assert_eq!(counts, [64, 128, 256, 512, 1000], "the change at 256 starts the count anew");
     assert!(matches!(verdict, Verdict::Reached { .. }), "{verdict:?}");
+}
+
+/// Changes that fall as `N^-0.65` say the same at every look, however many are remembered; a lucky small one among them counts for
+/// its share only.
+#[test]
+fn remembered_changes_are_brought_to_the_present_count() {
+    let change = |look: i32| 0.3 * 2.0_f64.powf(-0.65).powi(look);
+    let mut estimates = vec![0.0];
+    for look in 1..=4 {
+        estimates.push(estimates[look as usize - 1] + change(look));
+    }
+    let rule = |memory| Doubling { last: 1024, tolerance: 0.0, memory, ..RULE };
+    for memory in [1, 2, 3, 4, 9] {
+        let Verdict::Exhausted { error } = run(&rule(memory), &estimates).1 else { panic!("no change is small") };
+        assert_close!(error, change(4), 1e-12, 0.0);
+    }
+    estimates[4] = estimates[3];
+    let last = |memory| match run(&rule(memory), &estimates).1 {
+        Verdict::Reached { error } | Verdict::Exhausted { error } => error,
+        Verdict::Continue { .. } => panic!("the limit is spent"),
+    };
+    assert_close!(last(4), (0.75_f64).sqrt() * change(4), 1e-12, 0.0);
+    assert_close!(last(1), 0.0, 0.0, 0.0);
 }
 
 #[test]

@@ -172,7 +172,7 @@ fn random_cosine_can_fail() {
 fn doubling_ratio(sampler: Sampler) -> f64 {
     let basis = Basis::new();
     let truth = basis.truth();
-    let rule = Doubling { first: 1024, last: 2048, tolerance: 0.0, confirmation: f64::INFINITY };
+    let rule = Doubling { first: 1024, last: 2048, tolerance: 0.0, confirmation: f64::INFINITY, memory: 1 };
     let (mut estimated, mut real) = (Vec::new(), Vec::new());
     for seed in 0..REPLICATES {
         let mut progress = rule.start();
