@@ -1,6 +1,6 @@
 //! What may be typed: the commands and the options that all of them take.
 
-use crate::{bake, bases, cost, export, inspect, light, plan, reference, render};
+use crate::{bake, bases, cost, export, inspect, light, plan, reference, render, uv};
 
 /// Bakes how a scene answers to light, and relights it under any light probe.
 #[derive(Debug, clap::Parser)]
@@ -49,6 +49,9 @@ pub(crate) enum Command {
     /// Compare the bases of irradiance normal mapping: error, time, bytes.
     #[command(after_help = bases::EXAMPLES)]
     Bases(bases::Options),
+    /// Check the light-map coordinates of a scene, or make them.
+    #[command(after_help = uv::EXAMPLES)]
+    Uv(uv::Options),
     /// Name the built-in scenes and light probes.
     List,
 }

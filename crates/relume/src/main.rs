@@ -23,6 +23,7 @@ mod settings;
 mod source;
 mod timed;
 mod usage;
+mod uv;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -58,6 +59,7 @@ fn run(arguments: &Arguments, console: &Console) -> anyhow::Result<()> {
         Command::Cost(options) => cost::run(options, console),
         Command::Light(options) => light::run(options, console),
         Command::Bases(options) => bases::run(options, console),
+        Command::Uv(options) => uv::run(options, console),
         Command::List => list::run(console),
     }
 }

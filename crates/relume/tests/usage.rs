@@ -6,7 +6,7 @@ use command::{complaint, relume};
 use std::path::Path;
 
 const COMMANDS: [&str; 10] =
-    ["plan", "bake", "render", "reference", "inspect", "export", "light", "cost", "bases", "list"];
+    ["plan", "bake", "render", "reference", "inspect", "export", "light", "cost", "bases", "uv", "list"];
 
 #[test]
 fn every_command_has_help() {

@@ -8,6 +8,7 @@ mod error;
 mod folder;
 mod gltf;
 pub mod known;
+pub mod lightmap;
 mod load;
 mod model;
 mod normals;

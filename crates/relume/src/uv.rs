@@ -1,0 +1,213 @@
+//! `relume uv`: whether a scene's light-map coordinates serve, or what they would be if they were made.
+
+use crate::columns::{Columns, Side};
+use crate::console::Console;
+use crate::output;
+use crate::picture::{self, Size, Target};
+use crate::source::SceneOptions;
+use anyhow::{Result, bail};
+use scene::lightmap::{self, Atlas, Charts, Density, Fault, FaultKind, Unwrap};
+use scene::{Mesh, Scene};
+use serde_json::{Value, json};
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  relume uv house.glb
+  relume uv house.glb --sheet mesh --layout house-uv.png
+  relume uv builtin:teacup --unwrap --texels-per-metre 200 --layout teacup-uv.png
+
+Looks at the second texture coordinates. Ends with status 1 where a triangle lies outside of the unit square, upon another, folded,
+without area or without coordinates; each is named with its mesh and number. A picture shows each chart in a colour of its own.";
+
+const COLUMNS: Columns =
+    Columns(&[(34, Side::Left), (9, Side::Right), (7, Side::Right), (7, Side::Right), (8, Side::Right)]);
+/// Faults that are listed one by one unless more are asked for.
+const LISTED: usize = 12;
+const LARGEST_SIDE: i64 = 16_384;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    #[command(flatten)]
+    scene: SceneOptions,
+    /// Which meshes share a sheet, so that they must not lie upon each other.
+    #[arg(long, value_enum, default_value_t = SheetName::Scene)]
+    sheet: SheetName,
+    /// Make the coordinates anew, in one sheet for all meshes.
+    #[arg(long, conflicts_with = "sheet")]
+    unwrap: bool,
+    /// Density of what is unwrapped.
+    #[arg(long, value_name = "D", requires = "unwrap", conflicts_with = "size")]
+    texels_per_metre: Option<f32>,
+    /// Columns of the sheet: of what is unwrapped, and of the picture.
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..=LARGEST_SIDE))]
+    size: u32,
+    /// Free texels around each chart of what is unwrapped.
+    #[arg(long, value_name = "N", default_value_t = 2, requires = "unwrap", value_parser = clap::value_parser!(u32).range(0..=64))]
+    padding: u32,
+    /// A picture of the sheet: .png. With `--sheet mesh`, all sheets upon each other.
+    #[arg(long, value_name = "FILE", value_parser = picture::target)]
+    layout: Option<Target>,
+    /// List every fault.
+    #[arg(long)]
+    all: bool,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum SheetName {
+    /// All meshes of the scene share one sheet.
+    Scene,
+    /// Each mesh has a sheet of its own.
+    Mesh,
+}
+
+pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
+    options.layout.as_ref().map_or(Ok(()), |target| output::check(&target.path))?;
+    let mut scene = options.scene.load(console)?;
+    let all: Vec<usize> = (0..scene.meshes.len()).collect();
+    let atlas = options.unwrap.then(|| lightmap::unwrap(&mut scene, &all, &options.as_unwrap())).transpose()?;
+    let faults: Vec<Fault> = match options.sheet {
+        SheetName::Scene => lightmap::faults(&scene, &all),
+        SheetName::Mesh => all.iter().flat_map(|&mesh| lightmap::faults(&scene, &[mesh])).collect(),
+    };
+    if let Some(target) = &options.layout {
+        let size = atlas.map_or(Size { width: options.size, height: options.size }, |atlas| Size {
+            width: atlas.width,
+            height: atlas.height,
+        });
+        draw(&scene, &all, size, target)?;
+    }
+    console.print(&if options.json {
+        as_json(&scene, atlas.as_ref(), &faults)
+    } else {
+        as_text(&scene, atlas.as_ref(), &faults, if options.all { usize::MAX } else { LISTED })
+    })?;
+    match faults.len() {
+        0 => Ok(()),
+        1 => bail!("{}: 1 fault in the light-map coordinates", scene.name),
+        n => bail!("{}: {n} faults in the light-map coordinates", scene.name),
+    }
+}
+
+impl Options {
+    fn as_unwrap(&self) -> Unwrap {
+        let density = self.texels_per_metre.map_or(Density::Side(self.size), Density::PerMetre);
+        Unwrap { density, padding: self.padding }
+    }
+}
+
+fn as_text(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault], most: usize) -> String {
+    let mut text = String::new();
+    if let Some(atlas) = atlas {
+        text.push_str(&format!(
+            "{} x {} texels, {:.4} to a metre, {} charts, {:.0} % of the sheet filled\n\n",
+            atlas.width,
+            atlas.height,
+            atlas.texels_per_metre,
+            atlas.charts,
+            100.0 * atlas.filled
+        ));
+    }
+    text.push_str(&COLUMNS.row(&["mesh", "triangles", "charts", "faults", "of sheet"]));
+    for (index, mesh) in scene.meshes.iter().enumerate() {
+        let told = faults.iter().filter(|fault| fault.mesh == index).count();
+        text.push_str(&COLUMNS.row(&[
+            &mesh.name,
+            &mesh.triangles.len().to_string(),
+            &charts(mesh).to_string(),
+            &told.to_string(),
+            &format!("{:.1} %", 100.0 * share(mesh)),
+        ]));
+    }
+    if !faults.is_empty() {
+        text.push('\n');
+    }
+    for fault in faults.iter().take(most) {
+        text.push_str(&sentence(scene, fault));
+    }
+    if faults.len() > most {
+        text.push_str(&format!("and {} more (--all lists them)\n", faults.len() - most));
+    }
+    text
+}
+
+fn sentence(scene: &Scene, fault: &Fault) -> String {
+    let name = |index: usize| {
+        let mesh = &scene.meshes[index];
+        format!("mesh {index} '{}' ({})", mesh.name, scene.materials[mesh.material as usize].name)
+    };
+    match fault.kind {
+        FaultKind::Missing => format!("{}: {} (--unwrap makes them)\n", name(fault.mesh), fault.kind),
+        FaultKind::Overlaps { mesh, triangle } => {
+            format!(
+                "{}, triangle {}: it lies upon triangle {triangle} of {}\n",
+                name(fault.mesh),
+                fault.triangle,
+                name(mesh)
+            )
+        }
+        kind => format!("{}, triangle {}: {kind}\n", name(fault.mesh), fault.triangle),
+    }
+}
+
+fn as_json(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault]) -> String {
+    let meshes: Vec<Value> = scene.meshes.iter().map(|mesh| {
+        json!({ "name": mesh.name, "triangles": mesh.triangles.len(), "charts": charts(mesh), "share": share(mesh) })
+    }).collect();
+    let faults: Vec<Value> = faults
+        .iter()
+        .map(|fault| {
+            let mut value = json!({ "mesh": fault.mesh, "triangle": fault.triangle, "what": fault.kind.to_string() });
+            if let FaultKind::Overlaps { mesh, triangle } = fault.kind {
+                value["other"] = json!({ "mesh": mesh, "triangle": triangle });
+            }
+            value
+        })
+        .collect();
+    let atlas = atlas.map(|atlas| {
+        json!({
+            "width": atlas.width, "height": atlas.height, "texels_per_metre": atlas.texels_per_metre,
+            "charts": atlas.charts, "filled": atlas.filled,
+        })
+    });
+    format!("{:#}", json!({ "scene": scene.name, "atlas": atlas, "meshes": meshes, "faults": faults }))
+}
+
+/// Charts of a mesh that has coordinates.
+fn charts(mesh: &Mesh) -> u32 {
+    if mesh.uv1.is_empty() { 0 } else { Charts::of(mesh).count }
+}
+
+/// Share of the unit square that the triangles of a mesh take, those upon each other counted each.
+fn share(mesh: &Mesh) -> f64 {
+    let area = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|v| mesh.uv1[v as usize].as_dvec2());
+        0.5 * (b - a).perp_dot(c - a).abs()
+    };
+    let areas = mesh.triangles.iter().filter(|_| !mesh.uv1.is_empty()).map(area);
+    areas.filter(|area| area.is_finite()).fold(0.0, |sum, area| sum + area)
+}
+
+/// Draws the texels that surfaces touch, each chart in a colour of its own; darker where the middle lies outside.
+fn draw(scene: &Scene, sheet: &[usize], size: Size, target: &Target) -> Result<()> {
+    let charts: Vec<Charts> = scene.meshes.iter().map(Charts::of).collect();
+    let count = size.width as usize * size.height as usize;
+    let mut display = vec![[24, 24, 28, 255]; count];
+    for texel in lightmap::texels(scene, sheet, size.width, size.height) {
+        let chart = charts[texel.mesh as usize].of_triangle[texel.triangle as usize];
+        let shade = if texel.is_middle { 1.0 } else { 0.6 };
+        let [r, g, b] = colour(texel.mesh, chart).map(|x| (255.0 * shade * x) as u8);
+        display[texel.row as usize * size.width as usize + texel.column as usize] = [r, g, b, 255];
+    }
+    let linear: Vec<[f32; 3]> = display.iter().map(|p| [p[0], p[1], p[2]].map(|x| f32::from(x) / 255.0)).collect();
+    target.write(size, &linear, &display)
+}
+
+/// A bright colour for a chart; neighbours in number differ.
+fn colour(mesh: u32, chart: u32) -> [f32; 3] {
+    // The golden ratio spreads hues evenly.
+    let hue = 6.0 * ((f64::from(mesh) * 0.381_966 + f64::from(chart) * 0.618_034).fract() as f32);
+    [0.0, 4.0, 2.0].map(|shift| 0.35 + 0.6 * (((hue + shift) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0))
+}

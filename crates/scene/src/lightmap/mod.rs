@@ -1,0 +1,15 @@
+//! Where each point of a surface lies in the pictures that hold its light: the second texture coordinates of meshes.
+//!
+//! A *sheet* is one such picture; the meshes on it share the unit square. A *chart* is a piece of a mesh whose triangles
+//! hang together in the sheet.
+
+mod chart;
+mod cover;
+mod fault;
+mod texel;
+mod unwrap;
+
+pub use chart::Charts;
+pub use fault::{Fault, FaultKind, faults};
+pub use texel::{Texel, texels};
+pub use unwrap::{Atlas, Density, Unwrap, UnwrapError, unwrap};

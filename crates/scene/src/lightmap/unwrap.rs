@@ -1,0 +1,224 @@
+//! Light-map coordinates for meshes that have none.
+
+use crate::{Material, Mesh, Scene};
+use glam::Vec2;
+
+/// Most texels of a sheet: 16,384 by 16,384.
+const MOST_TEXELS: f64 = 16_384.0 * 16_384.0;
+
+/// How fine a sheet is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Density {
+    /// As many texels to a metre; the sheet grows as it must.
+    PerMetre(f32),
+    /// A sheet of so many texels along u, as dense as all fits.
+    Side(u32),
+}
+
+/// How meshes are unwrapped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unwrap {
+    /// How fine the sheet is.
+    pub density: Density,
+    /// Texels around each chart that are left free, so that neither the filter nor the first mip-maps mix charts: `2^k` serve k levels.
+    pub padding: u32,
+}
+
+impl Default for Unwrap {
+    fn default() -> Self {
+        Self { density: Density::Side(1024), padding: 2 }
+    }
+}
+
+/// A sheet that was made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Atlas {
+    /// Texels along u.
+    pub width: u32,
+    /// Texels along v.
+    pub height: u32,
+    /// Texels to a metre.
+    pub texels_per_metre: f32,
+    /// Pieces that the meshes were cut into.
+    pub charts: u32,
+    /// Share of the texels that a surface covers.
+    pub filled: f32,
+}
+
+/// Why meshes could not be unwrapped.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum UnwrapError {
+    /// The sheet would be larger than any picture.
+    #[error("a sheet of {texels:.0} texels is too large; ask for fewer texels to a metre")]
+    TooLarge {
+        /// Texels that the surfaces alone take.
+        texels: f64,
+    },
+    /// Not all charts fit a sheet of the size asked for.
+    #[error("{charts} charts do not fit a sheet of {side} texels; ask for a larger sheet or less padding")]
+    TooSmall {
+        /// Pieces to be placed.
+        charts: u32,
+        /// Texels along a side.
+        side: u32,
+    },
+    /// A picture of the material hangs on the coordinates that would be replaced.
+    #[error("mesh '{mesh}': its pictures use the second texture coordinates, which cannot be replaced then; use those")]
+    InUse {
+        /// Name of the mesh.
+        mesh: String,
+    },
+    /// The meshes or the options are not what can be unwrapped.
+    #[error("the meshes cannot be unwrapped: {0}")]
+    Refused(String),
+}
+
+/// Gives the meshes of a sheet second texture coordinates that lie side by side in the unit square, as dense everywhere; those that
+/// they had are replaced. Vertices on the borders of charts are split: triangles keep their order, vertices do not keep their numbers.
+///
+/// # Errors
+/// [`UnwrapError`] where the sheet would be too large or is too small. The scene is then as it was.
+pub fn unwrap(scene: &mut Scene, sheet: &[usize], options: &Unwrap) -> Result<Atlas, UnwrapError> {
+    check(scene, sheet, options)?;
+    let positions: Vec<Vec<[f32; 3]>> =
+        sheet.iter().map(|&m| scene.meshes[m].positions.iter().map(|p| p.to_array()).collect()).collect();
+    let inputs: Vec<uvunwrap::MeshInput<'_>> = sheet
+        .iter()
+        .zip(&positions)
+        .map(|(&m, positions)| uvunwrap::MeshInput::new(positions, scene.meshes[m].triangles.as_flattened()))
+        .collect();
+    let density = match options.density {
+        Density::PerMetre(texels_per_unit) => uvunwrap::Density::Fixed { texels_per_unit, page_size: None },
+        Density::Side(page_size) => uvunwrap::Density::Auto { page_size },
+    };
+    let library = uvunwrap::Options { density, padding: options.padding, ..uvunwrap::Options::default() };
+    let atlas = uvunwrap::generate(&inputs, &library).map_err(|error| UnwrapError::Refused(error.to_string()))?;
+    if atlas.page_count > 1 {
+        return Err(UnwrapError::TooSmall { charts: atlas.chart_count, side: atlas.width });
+    }
+    for (&m, unwrapped) in sheet.iter().zip(&atlas.meshes) {
+        take_over(&mut scene.meshes[m], unwrapped);
+    }
+    Ok(Atlas {
+        width: atlas.width,
+        height: atlas.height,
+        texels_per_metre: atlas.texels_per_unit,
+        charts: atlas.chart_count,
+        filled: atlas.utilization,
+    })
+}
+
+/// Refuses a density that would fill the memory before the library tries.
+fn check(scene: &Scene, sheet: &[usize], options: &Unwrap) -> Result<(), UnwrapError> {
+    let area = |&m: &usize| {
+        let mesh = &scene.meshes[m];
+        (0..mesh.triangles.len()).map(|t| mesh.area(t)).sum::<f64>()
+    };
+    let texels = match options.density {
+        Density::PerMetre(density) => sheet.iter().map(area).sum::<f64>() * f64::from(density).powi(2),
+        Density::Side(side) => f64::from(side).powi(2),
+    };
+    if let Some(&m) = sheet.iter().find(|&&m| is_textured_by_uv1(scene, &scene.meshes[m])) {
+        return Err(UnwrapError::InUse { mesh: scene.meshes[m].name.clone() });
+    }
+    // What is no number is too large as well.
+    if texels <= MOST_TEXELS { Ok(()) } else { Err(UnwrapError::TooLarge { texels }) }
+}
+
+fn is_textured_by_uv1(scene: &Scene, mesh: &Mesh) -> bool {
+    let Material { base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture, .. } =
+        &scene.materials[mesh.material as usize];
+    let slots = [base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture];
+    !mesh.uv1.is_empty() && slots.into_iter().flatten().any(|slot| slot.uv_set == 1)
+}
+
+/// Splits the vertices of a mesh as it was unwrapped, with all that they carry.
+fn take_over(mesh: &mut Mesh, unwrapped: &uvunwrap::OutputMesh) {
+    fn pick<T: Copy>(values: &mut Vec<T>, unwrapped: &uvunwrap::OutputMesh) {
+        if !values.is_empty() {
+            *values = unwrapped.vertices.iter().map(|vertex| values[vertex.xref as usize]).collect();
+        }
+    }
+    pick(&mut mesh.positions, unwrapped);
+    pick(&mut mesh.normals, unwrapped);
+    pick(&mut mesh.tangents, unwrapped);
+    pick(&mut mesh.uv0, unwrapped);
+    pick(&mut mesh.colors, unwrapped);
+    mesh.uv1 = unwrapped.vertices.iter().map(|vertex| Vec2::from(vertex.uv)).collect();
+    mesh.triangles = unwrapped.indices.as_chunks::<3>().0.to_vec();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Density, Unwrap, UnwrapError, unwrap};
+    use crate::lightmap::{FaultKind, faults, texels};
+    use crate::{Mesh, Scene, builtin};
+
+    fn all(scene: &Scene) -> Vec<usize> {
+        (0..scene.meshes.len()).collect()
+    }
+
+    /// What is unwrapped has no faults, the same triangles in space, and the density that is told.
+    #[test]
+    fn builtin_scenes_unwrap_without_faults() {
+        for name in ["cornell-box", "teacup", "atrium"] {
+            let before = builtin(name).expect("a scene of its own");
+            let mut scene = before.clone();
+            let sheet = all(&scene);
+            assert!(faults(&scene, &sheet).iter().all(|fault| fault.kind == FaultKind::Missing), "{name}");
+            let atlas = unwrap(&mut scene, &sheet, &Unwrap::default()).expect("it fits");
+            assert_eq!(faults(&scene, &sheet), [], "{name}");
+            let space = |mesh: &Mesh| -> Vec<_> {
+                mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize])).collect()
+            };
+            for (a, b) in before.meshes.iter().zip(&scene.meshes) {
+                assert_eq!(space(a), space(b), "{name}: {}", a.name);
+            }
+            let area: f64 = scene.meshes.iter().flat_map(|m| (0..m.triangles.len()).map(|t| m.area(t))).sum();
+            let middles =
+                texels(&scene, &sheet, atlas.width, atlas.height).iter().filter(|t| t.is_middle).count() as f64;
+            let expected = area * f64::from(atlas.texels_per_metre).powi(2);
+            assert!((middles / expected - 1.0).abs() < 0.1, "{name}: {middles} texels, {expected} by area");
+        }
+    }
+
+    /// Charts keep the padding between each other: no texel within it of one chart is touched by another.
+    #[test]
+    fn charts_keep_their_distance() {
+        let mut scene = builtin("teacup").expect("a scene of its own");
+        let sheet = all(&scene);
+        let atlas = unwrap(&mut scene, &sheet, &Unwrap { padding: 3, ..Unwrap::default() }).expect("it fits");
+        let charts: Vec<_> = scene.meshes.iter().map(crate::lightmap::Charts::of).collect();
+        let mut owner = std::collections::HashMap::new();
+        for texel in texels(&scene, &sheet, atlas.width, atlas.height) {
+            let chart = (texel.mesh, charts[texel.mesh as usize].of_triangle[texel.triangle as usize]);
+            owner.insert((texel.column as i32, texel.row as i32), chart);
+        }
+        for (&(x, y), chart) in &owner {
+            for (dx, dy) in (-3..=3).flat_map(|dx| (-3..=3).map(move |dy| (dx, dy))) {
+                let other = owner.get(&(x + dx, y + dy));
+                assert!(other.is_none_or(|other| other == chart), "{chart:?} and {other:?} at {x}, {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn sheets_that_cannot_be_are_refused_and_leave_the_scene_alone() {
+        let mut scene = builtin("teacup").expect("a scene of its own");
+        let sheet = all(&scene);
+        let vertices = scene.meshes[0].positions.len();
+        let with = |density| Unwrap { density, ..Unwrap::default() };
+        for density in [Density::PerMetre(1e9), Density::PerMetre(f32::NAN), Density::Side(1 << 20)] {
+            assert!(
+                matches!(unwrap(&mut scene, &sheet, &with(density)), Err(UnwrapError::TooLarge { .. })),
+                "{density:?}"
+            );
+        }
+        for density in [Density::PerMetre(-1.0), Density::Side(0), Density::Side(5)] {
+            assert!(unwrap(&mut scene, &sheet, &with(density)).is_err(), "{density:?}");
+        }
+        assert_eq!(scene.meshes[0].positions.len(), vertices);
+        assert!(scene.meshes.iter().all(|mesh| mesh.uv1.is_empty()));
+    }
+}
