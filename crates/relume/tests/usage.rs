@@ -5,7 +5,7 @@ mod command;
 use command::{complaint, relume};
 use std::path::Path;
 
-const COMMANDS: [&str; 10] =
+const COMMANDS: [&str; 11] =
     ["plan", "bake", "render", "reference", "inspect", "export", "light", "cost", "bases", "uv", "list"];
 
 #[test]

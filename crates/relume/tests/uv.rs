@@ -2,21 +2,21 @@
 
 mod command;
 
-use command::relume;
+use command::{complaint, relume};
 
 #[test]
 fn a_scene_without_coordinates_is_told_and_can_be_unwrapped() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let output = relume(folder, &["uv", "builtin:cornell-box"]);
-    let (told, error) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let (told, error) = (String::from_utf8_lossy(&output.stdout), complaint(&output));
     assert_eq!(output.status.code(), Some(1), "{told}{error}");
     assert!(told.contains("there are no second texture coordinates (--unwrap makes them)"), "{told}");
     assert!(error.contains("faults in the light-map coordinates"), "{error}");
 
     let arguments = ["uv", "builtin:cornell-box", "--unwrap", "--size", "256", "--layout", "sheet.png", "--json"];
     let output = relume(folder, &arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{}", complaint(&output));
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(value["faults"], serde_json::json!([]));
     let (width, height) = (value["atlas"]["width"].as_u64(), value["atlas"]["height"].as_u64());
@@ -36,7 +36,7 @@ fn densities_that_cannot_be_are_refused_in_a_sentence() {
     for (density, what) in [("1e9", "too large"), ("nan", "too large"), ("-1", "texels")] {
         let density = format!("--texels-per-metre={density}");
         let output = relume(folder.path(), &["uv", "builtin:teacup", "--unwrap", &density]);
-        let error = String::from_utf8_lossy(&output.stderr);
+        let error = complaint(&output);
         assert_eq!(output.status.code(), Some(1), "{density}: {error}");
         assert!(error.contains(what) && error.lines().count() == 1, "{density}: {error}");
     }

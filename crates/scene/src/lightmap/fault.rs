@@ -71,10 +71,9 @@ pub fn faults(scene: &Scene, sheet: &[usize]) -> Vec<Fault> {
             faults.extend(first);
             continue;
         }
-        let turned = turned(mesh);
-        for triangle in 0..mesh.triangles.len() {
+        for (triangle, is_folded) in turned(mesh).into_iter().enumerate() {
             let place = Place { mesh: index, triangle, corners: corners(mesh, triangle) };
-            match alone(&place.corners).or(turned[triangle].then_some(FaultKind::Folded)) {
+            match alone(&place.corners).or(is_folded.then_some(FaultKind::Folded)) {
                 Some(kind) => faults.push(Fault { mesh: index, triangle, kind }),
                 None => sound.push(place),
             }
