@@ -49,7 +49,7 @@ pub(crate) enum Command {
     /// Compare the bases of irradiance normal mapping: error, time, bytes.
     #[command(after_help = bases::EXAMPLES)]
     Bases(bases::Options),
-    /// Check the light-map coordinates of a scene, or make them.
+    /// Check the light-map coordinates of a scene, or try how it would unwrap.
     #[command(after_help = uv::EXAMPLES)]
     Uv(uv::Options),
     /// Name the built-in scenes and light probes.

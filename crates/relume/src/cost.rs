@@ -1,6 +1,7 @@
 //! `relume cost`: what accuracy costs on the user's own scene and machine, as a table, plots and a page.
 
 use crate::console::Console;
+use crate::lens::{self, Lens};
 use crate::source::{ProbeOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{interrupt, output, settings};
@@ -60,11 +61,19 @@ pub(crate) struct Options {
     /// Memory that coefficients and caches of a bake may take; K, M and G stand for powers of 1024.
     #[arg(long, value_name = "BYTES", value_parser = settings::bytes)]
     memory: Option<u64>,
+    /// The view of the pictures: the name of a camera, or eye x,y,z, target x,y,z and vertical angle of view in degrees.
+    #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true)]
+    camera: Option<Lens>,
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let settings = options.settings()?;
-    let scene = options.scene.load(console)?;
+    let mut scene = options.scene.load(console)?;
+    if options.camera.is_some() {
+        // Pictures are drawn from the first.
+        let camera = lens::of_scene(options.camera.as_ref(), &scene)?;
+        scene.cameras.insert(0, camera);
+    }
     let environment = options.probe.load(console)?;
     output::check_all(&options.output, &FILES)?;
     interrupt::watch()?;

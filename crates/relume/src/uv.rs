@@ -1,4 +1,4 @@
-//! `relume uv`: whether a scene's light-map coordinates serve, or what they would be if they were made.
+//! `relume uv`: whether a scene's light-map coordinates serve, and how the program would unwrap it.
 
 use crate::columns::{Columns, Side};
 use crate::console::Console;
@@ -17,13 +17,14 @@ Examples:
   relume uv builtin:teacup --unwrap --texels-per-metre 200 --layout teacup-uv.png
 
 Looks at the second texture coordinates. Ends with status 1 where a triangle lies outside of the unit square, upon another, folded,
-without area or without coordinates; each is named with its mesh and number. A picture shows each chart in a colour of its own.";
+without area or without coordinates; of each the first fault is told, with mesh and number. --unwrap shows how the scene would be cut
+and how dense its sheet would be; it writes no scene. The picture shows each chart in a colour of its own.";
 
 const COLUMNS: Columns =
     Columns(&[(34, Side::Left), (9, Side::Right), (7, Side::Right), (7, Side::Right), (8, Side::Right)]);
 /// Faults that are listed one by one unless more are asked for.
 const LISTED: usize = 12;
-const LARGEST_SIDE: i64 = 16_384;
+const LARGEST_SIDE: i64 = 8192;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -32,20 +33,20 @@ pub(crate) struct Options {
     /// Which meshes share a sheet, so that they must not lie upon each other.
     #[arg(long, value_enum, default_value_t = SheetName::Scene)]
     sheet: SheetName,
-    /// Make the coordinates anew, in one sheet for all meshes.
+    /// Try coordinates of the program's own, in one sheet for all meshes.
     #[arg(long, conflicts_with = "sheet")]
     unwrap: bool,
     /// Density of what is unwrapped.
-    #[arg(long, value_name = "D", requires = "unwrap", conflicts_with = "size")]
+    #[arg(long, value_name = "D", requires = "unwrap", conflicts_with = "size", value_parser = density)]
     texels_per_metre: Option<f32>,
     /// Columns of the sheet: of what is unwrapped, and of the picture.
-    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..=LARGEST_SIDE))]
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=LARGEST_SIDE))]
     size: u32,
     /// Free texels around each chart of what is unwrapped.
     #[arg(long, value_name = "N", default_value_t = 2, requires = "unwrap", value_parser = clap::value_parser!(u32).range(0..=64))]
     padding: u32,
     /// A picture of the sheet: .png. With `--sheet mesh`, all sheets upon each other.
-    #[arg(long, value_name = "FILE", value_parser = picture::target)]
+    #[arg(long, value_name = "FILE", value_parser = png)]
     layout: Option<Target>,
     /// List every fault.
     #[arg(long)]
@@ -67,11 +68,15 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     options.layout.as_ref().map_or(Ok(()), |target| output::check(&target.path))?;
     let mut scene = options.scene.load(console)?;
     let all: Vec<usize> = (0..scene.meshes.len()).collect();
-    let atlas = options.unwrap.then(|| lightmap::unwrap(&mut scene, &all, &options.as_unwrap())).transpose()?;
-    let faults: Vec<Fault> = match options.sheet {
+    let atlas = if options.unwrap { Some(unwrap(&mut scene, &all, &options.as_unwrap(), console)?) } else { None };
+    let mut faults: Vec<Fault> = match options.sheet {
         SheetName::Scene => lightmap::faults(&scene, &all),
         SheetName::Mesh => all.iter().flat_map(|&mesh| lightmap::faults(&scene, &[mesh])).collect(),
     };
+    if options.unwrap {
+        // They have no place, which is counted, and can have none.
+        faults.retain(|fault| fault.kind != FaultKind::Flat);
+    }
     if let Some(target) = &options.layout {
         let size = atlas.map_or(Size { width: options.size, height: options.size }, |atlas| Size {
             width: atlas.width,
@@ -91,6 +96,23 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     }
 }
 
+fn unwrap(scene: &mut Scene, sheet: &[usize], options: &Unwrap, console: &Console) -> Result<Atlas> {
+    let progress = console.progress();
+    Ok(lightmap::unwrap(scene, sheet, options, &|stage, done, total| progress.set(stage, done, total))?)
+}
+
+/// Parses a density.
+fn density(text: &str) -> Result<f32, String> {
+    let value = text.parse().ok().filter(|density| (1e-6..=1e6).contains(density));
+    value.ok_or_else(|| "give texels to a metre from 0.000001 to 1000000, such as 20".into())
+}
+
+/// Parses the name of a picture for the display.
+fn png(text: &str) -> Result<Target, String> {
+    let is_png = text.to_ascii_lowercase().ends_with(".png");
+    if is_png { picture::target(text) } else { Err("give a file that ends in .png".into()) }
+}
+
 impl Options {
     fn as_unwrap(&self) -> Unwrap {
         let density = self.texels_per_metre.map_or(Density::Side(self.size), Density::PerMetre);
@@ -102,12 +124,13 @@ fn as_text(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault], most: usize) 
     let mut text = String::new();
     if let Some(atlas) = atlas {
         text.push_str(&format!(
-            "{} x {} texels, {:.4} to a metre, {} charts, {:.0} % of the sheet filled\n\n",
+            "{} x {} texels, {:.4} to a metre, {} charts, {:.0} % of the sheet filled, {} triangles too thin for a place\n\n",
             atlas.width,
             atlas.height,
             atlas.texels_per_metre,
             atlas.charts,
-            100.0 * atlas.filled
+            100.0 * atlas.filled,
+            atlas.lost
         ));
     }
     text.push_str(&COLUMNS.row(&["mesh", "triangles", "charts", "faults", "of sheet"]));
@@ -139,7 +162,7 @@ fn sentence(scene: &Scene, fault: &Fault) -> String {
         format!("mesh {index} '{}' ({})", mesh.name, scene.materials[mesh.material as usize].name)
     };
     match fault.kind {
-        FaultKind::Missing => format!("{}: {} (--unwrap makes them)\n", name(fault.mesh), fault.kind),
+        FaultKind::Missing => format!("{}: {} (--unwrap shows what they could be)\n", name(fault.mesh), fault.kind),
         FaultKind::Overlaps { mesh, triangle } => {
             format!(
                 "{}, triangle {}: it lies upon triangle {triangle} of {}\n",
@@ -169,7 +192,7 @@ fn as_json(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault]) -> String {
     let atlas = atlas.map(|atlas| {
         json!({
             "width": atlas.width, "height": atlas.height, "texels_per_metre": atlas.texels_per_metre,
-            "charts": atlas.charts, "filled": atlas.filled,
+            "charts": atlas.charts, "filled": atlas.filled, "lost": atlas.lost,
         })
     });
     format!("{:#}", json!({ "scene": scene.name, "atlas": atlas, "meshes": meshes, "faults": faults }))
@@ -201,8 +224,8 @@ fn draw(scene: &Scene, sheet: &[usize], size: Size, target: &Target) -> Result<(
         let [r, g, b] = colour(texel.mesh, chart).map(|x| (255.0 * shade * x) as u8);
         display[texel.row as usize * size.width as usize + texel.column as usize] = [r, g, b, 255];
     }
-    let linear: Vec<[f32; 3]> = display.iter().map(|p| [p[0], p[1], p[2]].map(|x| f32::from(x) / 255.0)).collect();
-    target.write(size, &linear, &display)
+    // A PNG has no use for radiance.
+    target.write(size, &[], &display)
 }
 
 /// A bright colour for a chart; neighbours in number differ.

@@ -42,6 +42,7 @@ fn wrong_usage_ends_with_2_and_a_reason() {
         (&["cost", "builtin:plane", "-o", "a"], "--probe"),
         (&["cost", "builtin:plane", "--probe", "builtin:sky", "-o", "a", "--budget", "0"], "seconds"),
         (&["cost", "builtin:plane", "--probe", "builtin:sky", "-o", "a", "--target-error", "7"], "--target-error"),
+        (&["cost", "builtin:plane", "--probe", "builtin:sky", "-o", "a", "--camera", "nowhere"], "nowhere"),
         (&["bake", "builtin:plane"], "--output"),
         (&["bake", "builtin:nowhere", "-o", "a.prt"], "atrium"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--rays", "9", "--error", "0.1"], "cannot be used with"),

@@ -11,7 +11,7 @@ fn a_scene_without_coordinates_is_told_and_can_be_unwrapped() {
     let output = relume(folder, &["uv", "builtin:cornell-box"]);
     let (told, error) = (String::from_utf8_lossy(&output.stdout), complaint(&output));
     assert_eq!(output.status.code(), Some(1), "{told}{error}");
-    assert!(told.contains("there are no second texture coordinates (--unwrap makes them)"), "{told}");
+    assert!(told.contains("there are no second texture coordinates (--unwrap shows what they could be)"), "{told}");
     assert!(error.contains("faults in the light-map coordinates"), "{error}");
 
     let arguments = ["uv", "builtin:cornell-box", "--unwrap", "--size", "256", "--layout", "sheet.png", "--json"];
@@ -33,11 +33,19 @@ fn a_scene_without_coordinates_is_told_and_can_be_unwrapped() {
 #[test]
 fn densities_that_cannot_be_are_refused_in_a_sentence() {
     let folder = tempfile::tempdir().expect("a folder");
-    for (density, what) in [("1e9", "too large"), ("nan", "too large"), ("-1", "texels")] {
-        let density = format!("--texels-per-metre={density}");
-        let output = relume(folder.path(), &["uv", "builtin:teacup", "--unwrap", &density]);
-        let error = complaint(&output);
-        assert_eq!(output.status.code(), Some(1), "{density}: {error}");
-        assert!(error.contains(what) && error.lines().count() == 1, "{density}: {error}");
+    let tried = |option: &str| {
+        let output = relume(folder.path(), &["uv", "builtin:teacup", "--unwrap", option]);
+        (output.status.code(), complaint(&output))
+    };
+    for density in ["nan", "-1", "0", "1e9"] {
+        let (code, error) = tried(&format!("--texels-per-metre={density}"));
+        assert_eq!(code, Some(2), "{density}: {error}");
+        assert!(error.contains("texels to a metre from"), "{density}: {error}");
     }
+    let (code, error) = tried("--texels-per-metre=1000000");
+    assert_eq!(code, Some(1), "{error}");
+    assert!(error.contains("ask for fewer texels to a metre") && error.lines().count() == 1, "{error}");
+    let (code, error) = tried("--size=16");
+    assert_eq!(code, Some(1), "{error}");
+    assert!(error.contains("charts do not fit a sheet of 16 texels") && error.lines().count() == 1, "{error}");
 }

@@ -15,13 +15,14 @@ pub struct Doubling {
     pub first: u32,
     /// No look goes beyond this many samples.
     pub last: u32,
-    /// Allowed L2 norm of the change, in the unit of the estimates.
+    /// Allowed error, in the unit of the estimates.
     pub tolerance: f64,
     /// The change before must have been within this multiple of the tolerance: infinity asks for no confirmation, 1 for
-    /// two looks in a row. A change halves with about every doubling, so 2 costs next to nothing and catches
+    /// two looks in a row. A change falls to about 0.6 of the one before, so 2 costs next to nothing and catches
     /// most of the lucky small changes, such as a small distant blocker that two looks both miss.
     pub confirmation: f64,
-    /// Number of last changes whose root mean square, as `N^-0.65` brings them to the present count, is the error; 1: the last alone.
+    /// Number of last changes whose root mean square, as `N^-0.65` brings them to the present count, is the error, at least the last
+    /// over the square root of 2, so that what a look finds anew is not lost among changes of nothing; 1: the last alone.
     pub memory: usize,
 }
 
@@ -83,11 +84,13 @@ impl Doubling {
     }
 
     fn error(&self, changes: &[f64]) -> f64 {
-        let last = &changes[changes.len().saturating_sub(self.memory.max(1))..];
-        if last.is_empty() {
+        let remembered = &changes[changes.len().saturating_sub(self.memory.max(1))..];
+        let Some(last) = remembered.last() else {
             return f64::INFINITY;
-        }
-        (last.iter().map(|change| change * change).sum::<f64>() / last.len() as f64).sqrt()
+        };
+        let mean = (remembered.iter().map(|change| change * change).sum::<f64>() / remembered.len() as f64).sqrt();
+        // The comparison, unlike a maximum, lets through what is no number: that never passes.
+        if mean < last * std::f64::consts::FRAC_1_SQRT_2 { last * std::f64::consts::FRAC_1_SQRT_2 } else { mean }
     }
 }
 

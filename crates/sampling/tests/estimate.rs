@@ -57,6 +57,17 @@ fn remembered_changes_are_brought_to_the_present_count() {
     assert_close!(last(1), 0.0, 0.0, 0.0);
 }
 
+/// A blocker that only the last look finds is not lost among the looks before it that found nothing.
+#[test]
+fn what_is_found_late_counts() {
+    // A tolerance that no change meets, so that the rule sees all looks.
+    let rule = Doubling { last: 1024, tolerance: -1.0, memory: 4, ..RULE };
+    let Verdict::Exhausted { error } = run(&rule, &[1.0, 1.0, 1.0, 1.0, 1.2]).1 else {
+        panic!("no change is less than nothing")
+    };
+    assert_close!(error, 0.2 / 2.0_f64.sqrt(), 1e-12, 0.0);
+}
+
 #[test]
 fn noise_can_fail() {
     let (counts, verdict) = run(&RULE, &[0.0, 1.0, 0.0, 1.0, 0.0]);

@@ -29,7 +29,7 @@ pub enum Error {
         what: String,
     },
     /// The operating system could not give the file.
-    #[error("{}: {object}", file.display())]
+    #[error("{}: cannot read the {object}", file.display())]
     Io {
         /// The file that could not be read.
         file: PathBuf,

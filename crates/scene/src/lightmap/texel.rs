@@ -39,8 +39,11 @@ pub fn texels(scene: &Scene, sheet: &[usize], width: u32, height: u32) -> Vec<Te
                 continue;
             }
             cover(placed, [width, height], &mut |column, row| {
-                let (distance, _) = closest(placed, middle(column, row));
                 let best = &mut nearest[row as usize * width as usize + column as usize];
+                if best.distance == 0.0 {
+                    return;
+                }
+                let (distance, _) = closest(placed, middle(column, row));
                 if distance < best.distance {
                     *best = Nearest { distance, mesh: index as u32, triangle: triangle as u32 };
                 }

@@ -1,10 +1,11 @@
-//! Light-map coordinates for meshes that have none.
+//! Light-map coordinates made by the program.
 
+use super::fault::{corners, doubled_area};
 use crate::{Material, Mesh, Scene};
 use glam::Vec2;
 
-/// Most texels of a sheet: 16,384 by 16,384.
-const MOST_TEXELS: f64 = 16_384.0 * 16_384.0;
+/// Most texels along a side of a sheet.
+const LARGEST_SIDE: u32 = 16_384;
 
 /// How fine a sheet is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +44,8 @@ pub struct Atlas {
     pub charts: u32,
     /// Share of the texels that a surface covers.
     pub filled: f32,
+    /// Triangles so thin beside their mesh that they have no place in the sheet; they hold no light to speak of.
+    pub lost: usize,
 }
 
 /// Why meshes could not be unwrapped.
@@ -50,11 +53,8 @@ pub struct Atlas {
 #[non_exhaustive]
 pub enum UnwrapError {
     /// The sheet would be larger than any picture.
-    #[error("a sheet of {texels:.0} texels is too large; ask for fewer texels to a metre")]
-    TooLarge {
-        /// Texels that the surfaces alone take.
-        texels: f64,
-    },
+    #[error("the sheet would be larger than {LARGEST_SIDE} x {LARGEST_SIDE} texels; ask for fewer texels to a metre")]
+    TooLarge,
     /// Not all charts fit a sheet of the size asked for.
     #[error("{charts} charts do not fit a sheet of {side} texels; ask for a larger sheet or less padding")]
     TooSmall {
@@ -77,9 +77,16 @@ pub enum UnwrapError {
 /// Gives the meshes of a sheet second texture coordinates that lie side by side in the unit square, as dense everywhere; those that
 /// they had are replaced. Vertices on the borders of charts are split: triangles keep their order, vertices do not keep their numbers.
 ///
+/// `progress` is told what is being done, how much is done, and of how much (as much where that is not known); it is called from several threads, but never at once.
+///
 /// # Errors
 /// [`UnwrapError`] where the sheet would be too large or is too small. The scene is then as it was.
-pub fn unwrap(scene: &mut Scene, sheet: &[usize], options: &Unwrap) -> Result<Atlas, UnwrapError> {
+pub fn unwrap(
+    scene: &mut Scene,
+    sheet: &[usize],
+    options: &Unwrap,
+    progress: &(dyn Fn(&'static str, u64, u64) + Sync),
+) -> Result<Atlas, UnwrapError> {
     check(scene, sheet, options)?;
     let positions: Vec<Vec<[f32; 3]>> =
         sheet.iter().map(|&m| scene.meshes[m].positions.iter().map(|p| p.to_array()).collect()).collect();
@@ -93,7 +100,19 @@ pub fn unwrap(scene: &mut Scene, sheet: &[usize], options: &Unwrap) -> Result<At
         Density::Side(page_size) => uvunwrap::Density::Auto { page_size },
     };
     let library = uvunwrap::Options { density, padding: options.padding, ..uvunwrap::Options::default() };
-    let atlas = uvunwrap::generate(&inputs, &library).map_err(|error| UnwrapError::Refused(error.to_string()))?;
+    let told = |step: uvunwrap::Progress| {
+        let stage = match step.stage {
+            uvunwrap::Stage::Packing => "placing charts",
+            _ => "cutting charts",
+        };
+        progress(stage, step.done as u64, step.total.unwrap_or(step.done) as u64);
+        true
+    };
+    let atlas = uvunwrap::generate_with_progress(&inputs, &library, told)
+        .map_err(|error| UnwrapError::Refused(error.to_string()))?;
+    if atlas.width.max(atlas.height) > LARGEST_SIDE {
+        return Err(UnwrapError::TooLarge);
+    }
     if atlas.page_count > 1 {
         return Err(UnwrapError::TooSmall { charts: atlas.chart_count, side: atlas.width });
     }
@@ -106,6 +125,7 @@ pub fn unwrap(scene: &mut Scene, sheet: &[usize], options: &Unwrap) -> Result<At
         texels_per_metre: atlas.texels_per_unit,
         charts: atlas.chart_count,
         filled: atlas.utilization,
+        lost: sheet.iter().map(|&m| lost(&scene.meshes[m])).sum(),
     })
 }
 
@@ -123,14 +143,19 @@ fn check(scene: &Scene, sheet: &[usize], options: &Unwrap) -> Result<(), UnwrapE
         return Err(UnwrapError::InUse { mesh: scene.meshes[m].name.clone() });
     }
     // What is no number is too large as well.
-    if texels <= MOST_TEXELS { Ok(()) } else { Err(UnwrapError::TooLarge { texels }) }
+    if texels <= f64::from(LARGEST_SIDE).powi(2) { Ok(()) } else { Err(UnwrapError::TooLarge) }
+}
+
+/// Triangles whose corners lie upon each other or on a line in the sheet.
+fn lost(mesh: &Mesh) -> usize {
+    (0..mesh.triangles.len()).filter(|&t| doubled_area(corners(mesh, t)) == 0.0).count()
 }
 
 fn is_textured_by_uv1(scene: &Scene, mesh: &Mesh) -> bool {
     let Material { base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture, .. } =
         &scene.materials[mesh.material as usize];
     let slots = [base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture];
-    !mesh.uv1.is_empty() && slots.into_iter().flatten().any(|slot| slot.uv_set == 1)
+    slots.into_iter().flatten().any(|slot| slot.uv_set == 1)
 }
 
 /// Splits the vertices of a mesh as it was unwrapped, with all that they carry.
@@ -166,9 +191,10 @@ mod tests {
             let before = builtin(name).expect("a scene of its own");
             let mut scene = before.clone();
             let sheet = all(&scene);
-            assert!(faults(&scene, &sheet).iter().all(|fault| fault.kind == FaultKind::Missing), "{name}");
-            let atlas = unwrap(&mut scene, &sheet, &Unwrap::default()).expect("it fits");
-            assert_eq!(faults(&scene, &sheet), [], "{name}");
+            let kinds: Vec<FaultKind> = faults(&scene, &sheet).iter().map(|fault| fault.kind).collect();
+            assert_eq!(kinds, vec![FaultKind::Missing; sheet.len()], "{name}");
+            let atlas = unwrap(&mut scene, &sheet, &Unwrap::default(), &|_, _, _| ()).expect("it fits");
+            assert_eq!((faults(&scene, &sheet), atlas.lost), (Vec::new(), 0), "{name}");
             let space = |mesh: &Mesh| -> Vec<_> {
                 mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize])).collect()
             };
@@ -188,7 +214,8 @@ mod tests {
     fn charts_keep_their_distance() {
         let mut scene = builtin("teacup").expect("a scene of its own");
         let sheet = all(&scene);
-        let atlas = unwrap(&mut scene, &sheet, &Unwrap { padding: 3, ..Unwrap::default() }).expect("it fits");
+        let atlas =
+            unwrap(&mut scene, &sheet, &Unwrap { padding: 3, ..Unwrap::default() }, &|_, _, _| ()).expect("it fits");
         let charts: Vec<_> = scene.meshes.iter().map(crate::lightmap::Charts::of).collect();
         let mut owner = std::collections::HashMap::new();
         for texel in texels(&scene, &sheet, atlas.width, atlas.height) {
@@ -211,12 +238,12 @@ mod tests {
         let with = |density| Unwrap { density, ..Unwrap::default() };
         for density in [Density::PerMetre(1e9), Density::PerMetre(f32::NAN), Density::Side(1 << 20)] {
             assert!(
-                matches!(unwrap(&mut scene, &sheet, &with(density)), Err(UnwrapError::TooLarge { .. })),
+                matches!(unwrap(&mut scene, &sheet, &with(density), &|_, _, _| ()), Err(UnwrapError::TooLarge)),
                 "{density:?}"
             );
         }
         for density in [Density::PerMetre(-1.0), Density::Side(0), Density::Side(5)] {
-            assert!(unwrap(&mut scene, &sheet, &with(density)).is_err(), "{density:?}");
+            assert!(unwrap(&mut scene, &sheet, &with(density), &|_, _, _| ()).is_err(), "{density:?}");
         }
         assert_eq!(scene.meshes[0].positions.len(), vertices);
         assert!(scene.meshes.iter().all(|mesh| mesh.uv1.is_empty()));
