@@ -34,7 +34,7 @@ fn a_scene_without_coordinates_is_told_and_can_be_unwrapped() {
 fn densities_that_cannot_be_are_refused_in_a_sentence() {
     let folder = tempfile::tempdir().expect("a folder");
     let tried = |option: &str| {
-        let output = relume(folder.path(), &["uv", "builtin:teacup", "--unwrap", option]);
+        let output = relume(folder.path(), &["uv", "builtin:teacup", "--unwrap", "-q", option]);
         (output.status.code(), complaint(&output))
     };
     for density in ["nan", "-1", "0", "1e9"] {
