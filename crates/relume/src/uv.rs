@@ -141,7 +141,7 @@ fn as_text(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault], most: usize) 
             &mesh.triangles.len().to_string(),
             &charts(mesh).to_string(),
             &told.to_string(),
-            &format!("{:.1} %", 100.0 * share(mesh)),
+            &format!("{:.1} %", 100.0 * lightmap::share(mesh)),
         ]));
     }
     if !faults.is_empty() {
@@ -177,7 +177,7 @@ fn sentence(scene: &Scene, fault: &Fault) -> String {
 
 fn as_json(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault]) -> String {
     let meshes: Vec<Value> = scene.meshes.iter().map(|mesh| {
-        json!({ "name": mesh.name, "triangles": mesh.triangles.len(), "charts": charts(mesh), "share": share(mesh) })
+        json!({ "name": mesh.name, "triangles": mesh.triangles.len(), "charts": charts(mesh), "share": lightmap::share(mesh) })
     }).collect();
     let faults: Vec<Value> = faults
         .iter()
@@ -201,16 +201,6 @@ fn as_json(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault]) -> String {
 /// Charts of a mesh that has coordinates.
 fn charts(mesh: &Mesh) -> u32 {
     if mesh.uv1.is_empty() { 0 } else { Charts::of(mesh).count }
-}
-
-/// Share of the unit square that the triangles of a mesh take, those upon each other counted each.
-fn share(mesh: &Mesh) -> f64 {
-    let area = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|v| mesh.uv1[v as usize].as_dvec2());
-        0.5 * (b - a).perp_dot(c - a).abs()
-    };
-    let areas = mesh.triangles.iter().filter(|_| !mesh.uv1.is_empty()).map(area);
-    areas.filter(|area| area.is_finite()).fold(0.0, |sum, area| sum + area)
 }
 
 /// Draws the texels that surfaces touch, each chart in a colour of its own; darker where the middle lies outside.

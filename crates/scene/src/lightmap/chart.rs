@@ -1,7 +1,7 @@
 //! The pieces into which the light-map coordinates cut a mesh.
 
 use crate::Mesh;
-use glam::{Vec2, Vec3};
+use crate::weld::weld;
 use std::collections::HashMap;
 
 /// Which chart each triangle of a mesh belongs to.
@@ -18,7 +18,10 @@ impl Charts {
     /// are the same vertices. A mesh without such coordinates has one chart per triangle.
     #[must_use]
     pub fn of(mesh: &Mesh) -> Self {
-        let corner = |v: u32| (bits3(mesh.positions[v as usize]), mesh.uv1.get(v as usize).map(|&uv| bits2(uv)));
+        let (_, places) = weld(mesh.positions.iter().copied());
+        // With a third coordinate of nothing, places in the sheet can be welded as well.
+        let (_, in_sheet) = weld(mesh.uv1.iter().map(|uv| uv.extend(0.0)));
+        let corner = |v: u32| (places[v as usize], in_sheet[v as usize]);
         let mut first = HashMap::new();
         let mut joined = Joined((0..mesh.triangles.len() as u32).collect());
         for (t, triangle) in (0u32..).zip(&mesh.triangles).filter(|_| !mesh.uv1.is_empty()) {
@@ -31,15 +34,6 @@ impl Charts {
         }
         joined.numbered()
     }
-}
-
-/// Positive and negative zero are one.
-fn bits2(v: Vec2) -> [u32; 2] {
-    (v + 0.0).to_array().map(f32::to_bits)
-}
-
-fn bits3(v: Vec3) -> [u32; 3] {
-    (v + 0.0).to_array().map(f32::to_bits)
 }
 
 /// Sets that grow together: each member points to one that is as small or smaller.

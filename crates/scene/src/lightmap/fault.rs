@@ -103,6 +103,14 @@ pub(super) fn doubled_area([a, b, c]: [DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
+/// Share of the unit square that the triangles of a mesh take, those upon each other counted each; 0 without coordinates.
+#[must_use]
+pub fn share(mesh: &Mesh) -> f64 {
+    let placed = (0..mesh.triangles.len()).filter(|_| !mesh.uv1.is_empty());
+    let areas = placed.map(|triangle| 0.5 * doubled_area(corners(mesh, triangle)).abs());
+    areas.filter(|area| area.is_finite()).fold(0.0, |sum, area| sum + area)
+}
+
 /// What is wrong with a triangle whatever lies around it.
 fn alone(corners: &[DVec2; 3]) -> Option<FaultKind> {
     if !corners.iter().all(|corner| corner.is_finite()) {

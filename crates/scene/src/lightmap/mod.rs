@@ -10,6 +10,6 @@ mod texel;
 mod unwrap;
 
 pub use chart::Charts;
-pub use fault::{Fault, FaultKind, faults};
+pub use fault::{Fault, FaultKind, faults, share};
 pub use texel::{Texel, texels};
 pub use unwrap::{Atlas, Density, Unwrap, UnwrapError, unwrap};

@@ -1,6 +1,7 @@
 //! Light-map coordinates made by the program.
 
 use super::fault::{corners, doubled_area};
+use crate::vertices::select;
 use crate::{Material, Mesh, Scene};
 use glam::Vec2;
 
@@ -160,16 +161,8 @@ fn is_textured_by_uv1(scene: &Scene, mesh: &Mesh) -> bool {
 
 /// Splits the vertices of a mesh as it was unwrapped, with all that they carry.
 fn take_over(mesh: &mut Mesh, unwrapped: &uvunwrap::OutputMesh) {
-    fn pick<T: Copy>(values: &mut Vec<T>, unwrapped: &uvunwrap::OutputMesh) {
-        if !values.is_empty() {
-            *values = unwrapped.vertices.iter().map(|vertex| values[vertex.xref as usize]).collect();
-        }
-    }
-    pick(&mut mesh.positions, unwrapped);
-    pick(&mut mesh.normals, unwrapped);
-    pick(&mut mesh.tangents, unwrapped);
-    pick(&mut mesh.uv0, unwrapped);
-    pick(&mut mesh.colors, unwrapped);
+    let kept: Vec<u32> = unwrapped.vertices.iter().map(|vertex| vertex.xref).collect();
+    select(mesh, &kept);
     mesh.uv1 = unwrapped.vertices.iter().map(|vertex| Vec2::from(vertex.uv)).collect();
     mesh.triangles = unwrapped.indices.as_chunks::<3>().0.to_vec();
 }
