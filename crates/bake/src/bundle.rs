@@ -51,6 +51,8 @@ pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, 
         cameras: cameras.iter().map(camera).collect(),
         geometry: parts.geometry,
         textures: parts.textures,
+        maps: None,
+        volume: None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The in-memory form of a `.prt` file: it mirrors the file.
 
-use crate::{Achieved, Plan, Settings};
+use crate::{Achieved, Maps, Plan, Settings, Volume};
 use serde::{Deserialize, Serialize};
 
 /// A baked scene: all that a renderer needs, and how it came to be.
@@ -30,6 +30,10 @@ pub struct Prt {
     pub transfer: Transfer,
     /// Referred to by [`TextureSlot::texture`].
     pub textures: Vec<Texture>,
+    /// Directional light maps, where they were asked for.
+    pub maps: Option<Maps>,
+    /// An irradiance volume, where one was asked for.
+    pub volume: Option<Volume>,
 }
 
 /// A run of triangles with one material. The back of a two-sided mesh is a mesh of its own.

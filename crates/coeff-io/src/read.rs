@@ -119,6 +119,8 @@ impl Arrays {
             geometry: self.geometry,
             transfer: Transfer { bands: header.bands, channels: header.channels, ..self.transfer },
             textures: pictures.map(texture).collect(),
+            maps: None,
+            volume: None,
         })
     }
 }

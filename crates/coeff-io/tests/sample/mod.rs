@@ -32,6 +32,8 @@ pub(crate) fn sample() -> Prt {
         geometry: geometry(),
         transfer: transfer(),
         textures: vec![texture("a.png", 3, 1), texture("b.png", 2, 2)],
+        maps: None,
+        volume: None,
     }
 }
 

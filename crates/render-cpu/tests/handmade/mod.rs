@@ -69,6 +69,8 @@ pub(crate) fn empty() -> Prt {
         geometry: Geometry::default(),
         transfer: Transfer { bands: 2, channels: 1, ..Transfer::default() },
         textures: Vec::new(),
+        maps: None,
+        volume: None,
     }
 }
 

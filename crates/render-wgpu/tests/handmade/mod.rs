@@ -84,6 +84,8 @@ fn empty(channels: u32) -> Prt {
         geometry: coeff_io::Geometry::default(),
         transfer: Transfer { bands: BANDS, channels, ..Transfer::default() },
         textures: Vec::new(),
+        maps: None,
+        volume: None,
     }
 }
 
