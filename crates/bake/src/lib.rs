@@ -9,11 +9,13 @@
 
 mod account;
 mod albedo;
+mod arrival;
 mod bake;
 mod bandwidth;
 mod bend;
 mod bundle;
 mod directions;
+mod domain;
 mod drawn;
 mod error;
 mod facts;
