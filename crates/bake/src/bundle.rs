@@ -9,8 +9,8 @@ use scene::{AlphaMode, Mesh, Scene, TextureSlot, Wrap};
 use std::collections::BTreeMap;
 
 /// What a bake found, receiver by receiver.
-pub(crate) struct Baked {
-    pub(crate) transfer: Field,
+pub(crate) struct Baked<'a> {
+    pub(crate) transfer: &'a Field,
     /// Open share of each permanent receiver; empty where nothing is blocked.
     pub(crate) openness: Vec<f32>,
     pub(crate) plan: Plan,
@@ -18,7 +18,7 @@ pub(crate) struct Baked {
 }
 
 /// Builds the file. Receivers keep their order: fronts, then the backs of two-sided materials.
-pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, baked: Baked) -> Prt {
+pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, baked: Baked<'_>) -> Prt {
     let mut parts = Parts::new(scene, &baked.plan);
     for (index, mesh) in scene.meshes.iter().enumerate() {
         parts.add_front(index, mesh);
@@ -43,7 +43,7 @@ pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, 
         convention: sh_math::CONVENTION.to_owned(),
         scene: scene.name.clone(),
         settings: settings.clone(),
-        transfer: flattened(&baked.transfer, receivers.permanent, baked.plan.bands, baked.openness, albedo),
+        transfer: flattened(baked.transfer, receivers.permanent, baked.plan.bands, baked.openness, albedo),
         plan: baked.plan,
         achieved: baked.achieved,
         meshes: parts.meshes,
