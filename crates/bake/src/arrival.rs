@@ -162,10 +162,10 @@ impl<'a> Arrivals<'a> {
             let blockers = self.gatherer.blockers(receiver, index, step, direct.openness, worker);
             arrival.inside_share = blockers.inside_share;
             arrival.bounce_rays = blockers.rays;
-            if self.gatherer.hits {
-                for (direction, hit, weight) in &blockers.found {
-                    self.add_sent(*direction, hit, *weight, &mut arrival.values);
-                }
+            if self.gatherer.hits && !blockers.found.is_empty() {
+                let open = self.gatherer.bank.domain.open_about(self.functions, receiver.normal);
+                let closed: Vec<f32> = open.iter().zip(&direct.transfer).map(|(all, open)| all - open).collect();
+                self.add_sent(&blockers.found, &closed, &mut arrival.values);
             }
             arrival.seen = blockers.found.iter().map(|(direction, hit, _)| (*direction, hit.t)).collect();
         }
@@ -197,36 +197,59 @@ impl<'a> Arrivals<'a> {
         }
     }
 
-    /// Adds what a surface sends along one direction, by its share of the domain.
-    fn add_sent(&self, direction: Vec3, hit: &Hit, weight: f32, values: &mut [f32]) {
+    /// Adds what surfaces send along the directions that meet them, by their shares of the domain.
+    ///
+    /// `closed` is the mean of every function over the directions that are not open: few directions miss it, so their mean goes with what
+    /// they miss. A surrounding that sends the same everywhere is exact.
+    fn add_sent(&self, found: &[(Vec3, Hit, f32)], closed: &[f32], values: &mut [f32]) {
+        let Shape { functions, depth, channels } = self.shape;
+        let mut missed = closed.to_vec();
+        let (mut mean, mut total) = (vec![0.0f32; depth * channels], 0.0f32);
+        let (mut harmonics, mut sent) = (vec![0.0; functions], vec![0.0f32; depth * channels]);
+        for (direction, hit, weight) in found {
+            sh_math::evaluate(self.functions, *direction, &mut harmonics);
+            missed.iter_mut().zip(&harmonics).for_each(|(rest, y)| *rest -= weight * y);
+            total += weight;
+            if !self.sent(hit, &mut sent) {
+                continue;
+            }
+            mean.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += weight * s);
+            for (out, harmonic) in values.chunks_exact_mut(depth * channels).zip(&harmonics) {
+                let factor = weight * harmonic;
+                out.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += factor * s);
+            }
+        }
+        if total > 0.0 {
+            for (out, rest) in values.chunks_exact_mut(depth * channels).zip(missed) {
+                out.iter_mut().zip(&mean).for_each(|(sum, m)| *sum += rest / total * m);
+            }
+        }
+    }
+
+    /// Writes what a surface sends at a point, `[depth][channel]`; whether it sends anything.
+    fn sent(&self, hit: &Hit, out: &mut [f32]) -> bool {
         let world = self.gatherer.world;
         let albedo = world.albedo(hit.triangle, hit.u, hit.v).to_array();
         if albedo == [0.0; 3] {
-            return;
+            return false;
         }
+        out.fill(0.0);
         let corners = world.corners[hit.triangle as usize].map(|c| resolve(c, !hit.front, self.receivers));
-        let shares = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let mut harmonics = [0.0; 25];
-        let harmonics = &mut harmonics[..self.shape.functions];
-        sh_math::evaluate(self.functions, direction, harmonics);
-        let Shape { depth, channels, .. } = self.shape;
-        let mut sent = vec![0.0f32; depth * channels];
-        for (corner, share) in corners.into_iter().zip(shares) {
-            for channel in 0..channels {
-                let factor = share * weight * albedo[channel];
+        let channels = self.shape.channels;
+        for (corner, share) in corners.into_iter().zip([1.0 - hit.u - hit.v, hit.u, hit.v]) {
+            for (channel, albedo) in albedo.iter().enumerate().take(channels) {
+                let factor = share * albedo;
                 match &self.sent {
                     Sent::Transfer(field) => {
                         let row = field.channel(corner, channel);
-                        let out = sent.iter_mut().skip(channel).step_by(channels);
+                        let out = out.iter_mut().skip(channel).step_by(channels);
                         out.zip(row).for_each(|(sum, t)| *sum += factor * t);
                     }
-                    Sent::Radiance(radiance) => sent[channel] += factor * radiance[corner as usize][channel],
+                    Sent::Radiance(radiance) => out[channel] += factor * radiance[corner as usize][channel],
                 }
             }
         }
-        for (out, harmonic) in values.chunks_exact_mut(depth * channels).zip(harmonics) {
-            out.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += *harmonic * s);
-        }
+        true
     }
 }
 

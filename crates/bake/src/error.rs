@@ -44,6 +44,18 @@ pub enum Error {
         /// Bytes that were allowed.
         allowed: u64,
     },
+    /// Light maps do not fit into the memory allowed.
+    #[error(
+        "light maps of {texels} texels need {needed} bytes, more than the {allowed} of --memory; use fewer --texels, fewer --bands, a fixed light, or allow more"
+    )]
+    MapMemory {
+        /// Texels that surfaces touch.
+        texels: usize,
+        /// Bytes that are needed at once.
+        needed: u64,
+        /// Bytes that were allowed.
+        allowed: u64,
+    },
     /// The progress callback asked to stop.
     #[error("the bake was cancelled; no file was written")]
     Cancelled,

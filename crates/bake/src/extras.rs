@@ -89,7 +89,8 @@ impl Done<'_> {
     /// Bakes what is wanted into the file.
     pub(crate) fn add(&self, extras: &Extras, prt: &mut Prt) -> Result<(), Error> {
         if let Some(settings) = &extras.maps {
-            prt.maps = Some(crate::maps::bake(self, settings, prt)?);
+            let maps = crate::maps::bake(self, settings, prt)?;
+            prt.maps = Some(maps);
         }
         if let Some(settings) = &extras.volume {
             prt.volume = Some(crate::volume::bake(self, settings)?);

@@ -43,7 +43,7 @@ mod volume;
 mod world;
 
 pub use crate::bake::{ProgressFn, bake, bake_with, plan};
-pub use crate::maps::MapSettings;
+pub use crate::maps::{MapSettings, SheetSettings};
 pub use crate::volume::VolumeSettings;
 pub use error::Error;
 pub use extras::{Extras, FixedLight};

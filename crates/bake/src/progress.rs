@@ -24,6 +24,8 @@ pub enum Stage {
     Helpers,
     /// The n-th bounce, from 1.
     Bounce(u32),
+    /// What arrives at the texels of light maps.
+    Texels,
 }
 
 impl std::fmt::Display for Stage {
@@ -33,6 +35,7 @@ impl std::fmt::Display for Stage {
             Self::Visibility => write!(f, "visibility"),
             Self::Helpers => write!(f, "backs and near surfaces"),
             Self::Bounce(n) => write!(f, "bounce {n}"),
+            Self::Texels => write!(f, "texels"),
         }
     }
 }
