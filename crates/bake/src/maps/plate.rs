@@ -157,9 +157,9 @@ mod tests {
     #[test]
     fn the_blind_are_mended_from_their_own_chart() {
         let mut plate = two(1);
-        plate.owner[1 * 5 + 2] = 1;
+        plate.owner[7] = 1;
         assert_eq!(plate.mend(), 0);
-        let slot = plate.slot_of[1 * 5 + 2];
+        let slot = plate.slot_of[7];
         assert_eq!(plate.values[slot as usize], 1.0);
         let mut alone = Plate::empty([3, 3], 1);
         alone.owner[4] = 7;
