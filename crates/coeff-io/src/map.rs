@@ -1,6 +1,7 @@
 //! Directional light maps: the light that arrives at the texels of a sheet, as a function of the normal that a normal map asks for.
 
 use crate::Layers;
+use serde::{Deserialize, Serialize};
 use sh_math::hemisphere::Basis;
 
 /// Sheets of coefficients, and which meshes they lie upon (by their second texture coordinates).
@@ -21,7 +22,7 @@ pub struct Maps {
 }
 
 /// What the coefficients of maps and volumes hold.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MapLight {
     /// Light of one probe, as it lay: RGB per function.
     Fixed {

@@ -9,6 +9,7 @@ mod cost;
 mod draw;
 mod export;
 mod inspect;
+mod inspect_maps;
 mod interrupt;
 mod lens;
 mod light;

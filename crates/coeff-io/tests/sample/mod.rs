@@ -1,6 +1,7 @@
 //! A small baked scene in which every optional part is present.
 
 use coeff_io::*;
+use sh_math::hemisphere::Basis;
 
 /// Two meshes, two textures, three channels, two bands: every chunk kind and every record occurs.
 pub(crate) fn sample() -> Prt {
@@ -32,8 +33,8 @@ pub(crate) fn sample() -> Prt {
         geometry: geometry(),
         transfer: transfer(),
         textures: vec![texture("a.png", 3, 1), texture("b.png", 2, 2)],
-        maps: None,
-        volume: None,
+        maps: Some(maps()),
+        volume: Some(volume()),
     }
 }
 
@@ -176,4 +177,37 @@ fn transfer() -> Transfer {
 fn texture(name: &str, width: u32, height: u32) -> Texture {
     let rgba = (0..width * height).map(|i| [i as u8, 128, 255 - i as u8, 255]).collect();
     Texture { name: name.into(), width, height, rgba, wrap: [Wrap::Repeat, Wrap::Mirror] }
+}
+
+fn maps() -> Maps {
+    let sheet = |width: u32, height: u32, channels: u32| {
+        let numbers = 3 * width * height * channels;
+        let values: Vec<f32> = (0..numbers).map(|i| 0.75 - 0.125 * i as f32).collect();
+        Sheet { layers: Layers::exact([width, height, 3, channels], &values) }
+    };
+    Maps {
+        basis: Basis::Hl2,
+        light: MapLight::Fixed { probe: "builtin:sky".into(), bands: 5 },
+        sheets: vec![sheet(2, 1, 3), sheet(1, 3, 1)],
+        sheet_of_mesh: vec![Some(1), None],
+    }
+}
+
+/// Two coarse cells, of which the first is split.
+fn volume() -> Volume {
+    let leaf = |first: u32| Node::Leaf(std::array::from_fn(|i| (first + i as u32) % 8));
+    Volume {
+        origin: [-1.0, 0.0, 2.0],
+        spacing: [1.0, 2.0, 0.5],
+        cells: [1, 2, 1],
+        nodes: [Node::Split(2), leaf(0)].into_iter().chain((1..9).map(leaf)).collect(),
+        light: MapLight::Relightable { bands: 1 },
+        channels: 1,
+        values: (0..8 * 9).map(|i| i as f32 * 0.0625 - 2.0).collect(),
+        positions: (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|n| n as f32)).collect(),
+        validity: (0..8).map(|i| i as f32 * 0.125).collect(),
+        distances: (0..8).flat_map(|i| [i as f32 * 0.5, (i * i) as f32 * 0.25 + 0.125]).collect(),
+        resolution: 1,
+        reach: 4.0,
+    }
 }
