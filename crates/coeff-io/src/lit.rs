@@ -57,32 +57,26 @@ impl Maps {
             None
         })
     }
-}
 
-impl Prt {
-    /// Bands of light that transfer and light maps answer to, whichever has more; none where that is not supported.
+    /// Whether any mesh shows a map.
     #[must_use]
-    pub fn light_bands(&self) -> Option<Bands> {
-        let of_maps = match self.maps.as_ref().map(|maps| &maps.light) {
-            Some(MapLight::Relightable { bands }) => *bands,
-            _ => 0,
-        };
-        Bands::new(self.transfer.bands.max(of_maps))
+    pub fn are_shown(&self) -> bool {
+        self.sheet_of_mesh.iter().any(Option::is_some)
     }
 
-    /// The basis that the light maps are drawn in when `basis` is asked for (their own where it is none), cut to `functions`, under a
-    /// light turned by `rotation`; none where no mesh has a map.
+    /// The basis that `maps` are drawn in when `basis` is asked for (their own where it is none), cut to `functions`, under a light turned
+    /// by `rotation`; none where no mesh shows a map. Reads no sheet.
     ///
     /// # Errors
     /// Half a sentence about what cannot be shown: a basis where there are no maps, a number of functions that is no best fit
     /// ([`Basis::cut`]), another light than that of fixed maps.
-    pub fn map_basis(
-        &self,
+    pub fn drawn_in(
+        maps: Option<&Self>,
         basis: Option<Basis>,
         functions: Option<u32>,
         rotation: Quat,
     ) -> Result<Option<Basis>, String> {
-        let Some(maps) = self.maps.as_ref().filter(|maps| maps.sheet_of_mesh.iter().any(Option::is_some)) else {
+        let Some(maps) = maps.filter(|maps| maps.are_shown()) else {
             return match (basis, functions) {
                 (None, None) => Ok(None),
                 _ => Err("a basis is asked for, but the file holds no light maps; bake it with light maps".into()),
@@ -97,6 +91,18 @@ impl Prt {
         }
         let basis = basis.unwrap_or(maps.basis);
         functions.map_or(Ok(basis), |functions| cut(basis, functions)).map(Some)
+    }
+}
+
+impl Prt {
+    /// Bands of light that transfer and light maps answer to, whichever has more; none where that is not supported.
+    #[must_use]
+    pub fn light_bands(&self) -> Option<Bands> {
+        let of_maps = match self.maps.as_ref().map(|maps| &maps.light) {
+            Some(MapLight::Relightable { bands }) => *bands,
+            _ => 0,
+        };
+        Bands::new(self.transfer.bands.max(of_maps))
     }
 }
 

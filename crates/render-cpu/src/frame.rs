@@ -1,7 +1,7 @@
 //! What is asked of the renderer: view, size, light rotation, exposure, tone curve.
 
 use crate::Error;
-use coeff_io::{Camera, Prt};
+use coeff_io::{Camera, Maps, Prt};
 use glam::{Quat, Vec3};
 use sh_math::hemisphere::Basis;
 
@@ -79,7 +79,7 @@ impl Frame {
     /// on maps that hold another.
     pub fn check_for(&self, prt: &Prt) -> Result<Option<Basis>, Error> {
         self.check()?;
-        prt.map_basis(self.basis, self.functions, self.rotation).map_err(Error::Frame)
+        Maps::drawn_in(prt.maps.as_ref(), self.basis, self.functions, self.rotation).map_err(Error::Frame)
     }
 
     /// Says what is wrong with this frame, if anything is.

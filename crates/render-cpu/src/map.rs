@@ -65,7 +65,7 @@ impl Sheet {
 
 /// The light map of each triangle; empty where no mesh has one.
 pub(crate) fn sheet_of_triangle(prt: &Prt) -> Vec<u32> {
-    let Some(maps) = prt.maps.as_ref().filter(|maps| maps.sheet_of_mesh.iter().any(Option::is_some)) else {
+    let Some(maps) = prt.maps.as_ref().filter(|maps| maps.are_shown()) else {
         return Vec::new();
     };
     let mut out = vec![NO_SHEET; prt.geometry.triangles.len()];
