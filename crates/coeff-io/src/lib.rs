@@ -10,6 +10,7 @@ pub mod export;
 mod header;
 mod inspect;
 mod layers;
+mod lit;
 mod map;
 mod map_header;
 mod model;

@@ -23,6 +23,9 @@ pub(crate) fn check(prt: &Prt) -> Result<(), Error> {
         return refuse(format!("openness of {} vertices of {vertices}", transfer.openness.len()));
     }
     check_meshes(prt)?;
+    if let Some(fault) = prt.maps.as_ref().and_then(|maps| maps.fault(prt)) {
+        return refuse(fault);
+    }
     prt.materials.iter().try_for_each(|material| check_slots(material, prt.textures.len()))?;
     match prt.textures.iter().find(|t| t.rgba.len() as u64 != u64::from(t.width) * u64::from(t.height)) {
         Some(t) => refuse(format!("texture `{}` of {} x {} has {} texels", t.name, t.width, t.height, t.rgba.len())),

@@ -1,8 +1,9 @@
 //! What is asked of the renderer: view, size, light rotation, exposure, tone curve.
 
 use crate::Error;
-use coeff_io::Camera;
+use coeff_io::{Camera, Maps, Prt};
 use glam::{Quat, Vec3};
+use sh_math::hemisphere::Basis;
 
 /// Largest width and height of a picture.
 pub const MAX_SIZE: u32 = 16_384;
@@ -32,6 +33,12 @@ pub struct Frame {
     pub supersample: u32,
     /// Whether the probe is drawn where nothing else is.
     pub sky: bool,
+    /// Whether surfaces have their own colours; else they are white, and the picture is the light alone.
+    pub albedo: bool,
+    /// The basis that light maps are drawn in; their own where it is none.
+    pub basis: Option<Basis>,
+    /// How many functions of that basis are drawn; all where it is none.
+    pub functions: Option<u32>,
 }
 
 /// Curve from scene-referred values to display values in [0, 1], per channel.
@@ -46,7 +53,8 @@ pub enum Tonemap {
 }
 
 impl Frame {
-    /// A frame through `camera` with nothing but the light: no exposure change, no curve, no bloom, one sample per pixel, sky on.
+    /// A frame through `camera` with nothing but the light: no exposure change, no curve, no bloom, one sample per pixel, sky on,
+    /// light maps in their own basis.
     pub fn plain(camera: Camera, width: u32, height: u32) -> Self {
         Self {
             camera,
@@ -58,7 +66,20 @@ impl Frame {
             bloom: 0.0,
             supersample: 1,
             sky: true,
+            albedo: true,
+            basis: None,
+            functions: None,
         }
+    }
+
+    /// [`Frame::check`], and what of it `prt` cannot show; the basis that its light maps are drawn in, if it has any.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] as that; for a basis without light maps, for a number of functions that is no best fit, and for a turned light
+    /// on maps that hold another.
+    pub fn check_for(&self, prt: &Prt) -> Result<Option<Basis>, Error> {
+        self.check()?;
+        Maps::drawn_in(prt.maps.as_ref(), self.basis, self.functions, self.rotation).map_err(Error::Frame)
     }
 
     /// Says what is wrong with this frame, if anything is.

@@ -13,6 +13,7 @@ mod facet;
 mod frame;
 mod image;
 mod light;
+mod map;
 mod raster;
 mod renderer;
 mod shade;

@@ -3,18 +3,21 @@
 use crate::bins::{Bins, Tiles};
 use crate::image::Image;
 use crate::light::vertex_radiance;
+use crate::map::LitMaps;
 use crate::raster::{Piece, Window, pieces};
 use crate::shade::Shader;
 use crate::texture::SrgbTable;
 use crate::tile::{Canvas, Stage};
 use crate::tone::Quantiser;
 use crate::view::View;
-use crate::{Error, Frame, bloom, check};
+use crate::{Error, Frame, bloom, check, map};
 use coeff_io::{AlphaMode, Material, Prt};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Quat, Vec3};
 use probe_io::Environment;
 use probe_io::reflection::Reflection;
 use rayon::prelude::*;
+use sh_math::{Bands, hemisphere::Basis};
+use std::sync::{Arc, Mutex};
 
 /// Roughness levels of the prefiltered probe.
 pub const REFLECTION_LEVELS: usize = 8;
@@ -30,13 +33,19 @@ const CHUNK: usize = 4096;
 pub struct Renderer<'a> {
     prt: &'a Prt,
     environment: &'a Environment,
-    /// Coefficients of the light as the probe holds it.
+    /// Coefficients of the light as the probe holds it, in as many bands as transfer or maps have.
     light: sh_math::Rgb,
+    /// Bands of the transfer.
+    bands: Bands,
     reflection: Option<Reflection>,
     srgb: SrgbTable,
     quantiser: Quantiser,
     /// Material of each triangle.
     materials: Vec<u32>,
+    /// Light map of each triangle; empty where no mesh has one.
+    sheets: Vec<u32>,
+    /// The maps under the light of the last frame.
+    lit_maps: Mutex<Option<Arc<LitMaps>>>,
     /// Length of the diagonal of the box around all positions.
     diagonal: f64,
 }
@@ -57,17 +66,20 @@ impl<'a> Renderer<'a> {
     /// [`Error::Prt`] where the parts of `prt` do not fit each other.
     pub fn new(prt: &'a Prt, environment: &'a Environment) -> Result<Self, Error> {
         check::check(prt)?;
-        let bands = sh_math::Bands::new(prt.transfer.bands)
-            .ok_or_else(|| Error::Prt(format!("a transfer of {} bands, which is not supported", prt.transfer.bands)))?;
+        let unsupported = || Error::Prt(format!("a transfer of {} bands, which is not supported", prt.transfer.bands));
+        let bands = Bands::new(prt.transfer.bands).ok_or_else(unsupported)?;
         let shines = prt.meshes.iter().any(|mesh| prt.materials[mesh.material as usize].specular);
         Ok(Self {
             prt,
             environment,
-            light: sh_math::project(bands, environment.samples()),
+            bands,
+            light: sh_math::project(prt.light_bands().unwrap_or(bands), environment.samples()),
             reflection: shines.then(|| Reflection::build(environment, REFLECTION_LEVELS, REFLECTION_WIDTH)),
             srgb: SrgbTable::new(),
             quantiser: Quantiser::new(),
             materials: materials(prt),
+            sheets: map::sheet_of_triangle(prt),
+            lit_maps: Mutex::default(),
             diagonal: diagonal(&prt.geometry.positions),
         })
     }
@@ -78,9 +90,10 @@ impl<'a> Renderer<'a> {
         &self.light
     }
 
-    /// Lights the vertices by other coefficients, such as windowed ones; sky and reflections stay.
+    /// Lights vertices and relightable maps by other coefficients, such as windowed ones; sky and reflections stay.
     pub fn set_light(&mut self, light: sh_math::Rgb) {
         self.light = light;
+        self.lit_maps = Mutex::default();
     }
 
     /// Number of levels of the probe blurred for reflections: 0 where no surface mirrors it.
@@ -92,12 +105,14 @@ impl<'a> Renderer<'a> {
     /// Draws one frame as docs/shading.md says.
     ///
     /// # Errors
-    /// [`Error::Frame`] where a field of `frame` is out of range.
+    /// [`Error::Frame`] as [`Frame::check_for`].
     pub fn draw(&self, frame: &Frame) -> Result<Image, Error> {
-        frame.check()?;
+        let basis = frame.check_for(self.prt)?;
         let view = View::new(frame, self.diagonal);
         let rotation = frame.rotation.normalize();
-        let radiance = vertex_radiance(&self.prt.transfer, &self.light.rotated(rotation).values);
+        let light = self.light.rotated(rotation);
+        let radiance = vertex_radiance(&self.prt.transfer, &light.with_bands(self.bands).values);
+        let maps = basis.map(|basis| self.maps_under(&light, rotation, basis));
         let projected: Vec<DVec3> = self.prt.geometry.positions.par_iter().map(|&p| view.project(p)).collect();
         let shader = Shader {
             prt: self.prt,
@@ -107,8 +122,10 @@ impl<'a> Renderer<'a> {
             radiance: &radiance,
             light_from_world: rotation.inverse(),
             sky: frame.sky,
+            albedo: frame.albedo,
         };
-        let stage = Stage { shader, view: &view, projected: &projected, materials: &self.materials };
+        let maps = maps.as_ref().map(|maps| (self.sheets.as_slice(), maps.sheets.as_slice()));
+        let stage = Stage { shader, view: &view, projected: &projected, materials: &self.materials, maps };
         let mut linear = self.tiles(&stage, frame);
         let exposure = libm::exp2f(frame.exposure_ev);
         linear.par_iter_mut().for_each(|pixel| *pixel = pixel.map(|x| x * exposure));
@@ -116,6 +133,16 @@ impl<'a> Renderer<'a> {
             bloom::apply(frame.width as usize, frame.height as usize, &mut linear, frame.bloom);
         }
         Ok(Image::new(frame.width, frame.height, linear, frame.tonemap, &self.quantiser))
+    }
+
+    /// The light maps in a basis under the turned light: those of the last frame where nothing has changed.
+    fn maps_under(&self, light: &sh_math::Rgb, rotation: Quat, basis: Basis) -> Arc<LitMaps> {
+        // A panic elsewhere leaves whole maps or none.
+        let mut held = self.lit_maps.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        match held.take().filter(|maps| maps.rotation == rotation && maps.basis == basis) {
+            Some(maps) => held.insert(maps).clone(),
+            None => held.insert(Arc::new(LitMaps::new(self.prt, light, rotation, basis))).clone(),
+        }
     }
 
     /// The linear picture before exposure, drawn tile by tile.

@@ -1,6 +1,7 @@
 //! The colour of a surface at one sample: docs/shading.md, "Surface, per sample".
 
 use crate::brdf::reflectance;
+use crate::map::Sheet;
 use crate::texture::{Encoding, SrgbTable, coordinates, read};
 use coeff_io::{AlphaMode, Material, Prt, TextureSlot};
 use glam::{Quat, Vec3, Vec4};
@@ -19,12 +20,16 @@ pub(crate) struct Shader<'a> {
     pub(crate) radiance: &'a [Vec3],
     pub(crate) light_from_world: Quat,
     pub(crate) sky: bool,
+    /// Whether surfaces have colours of their own.
+    pub(crate) albedo: bool,
 }
 
 /// A place on a triangle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place<'a> {
     pub(crate) material: &'a Material,
+    /// The light map here, if there is one.
+    pub(crate) sheet: Option<&'a Sheet>,
     pub(crate) vertices: [usize; 3],
     pub(crate) weights: [f32; 3],
     /// From the eye, not unit.
@@ -74,17 +79,14 @@ impl Shader<'_> {
         let material = place.material;
         let base = self.base(place);
         let shine = self.texel(material.metallic_roughness_texture.as_ref(), place, Encoding::Linear);
-        let metallic = (material.metallic * shine.z).clamp(0.0, 1.0);
+        let metallic = if self.albedo { (material.metallic * shine.z).clamp(0.0, 1.0) } else { 0.0 };
         let roughness = (material.roughness * shine.y).clamp(0.0, 1.0);
-        let [a, b, c] = place.vertices.map(|v| self.radiance[v]);
-        let [wa, wb, wc] = place.weights;
-        let diffuse = (a * wa + b * wb + c * wc).max(Vec3::ZERO) * base.truncate() * (1.0 - metallic);
+        let color = if self.albedo { base.truncate() } else { Vec3::ONE };
+        let diffuse = self.light(place).max(Vec3::ZERO) * color * (1.0 - metallic);
         let glow = self.texel(material.emissive_texture.as_ref(), place, Encoding::Srgb(self.srgb)).truncate();
         let emission = Vec3::from(material.emissive) * glow;
         let specular = match self.reflection {
-            Some(reflection) if material.specular => {
-                self.specular(place, reflection, base.truncate(), metallic, roughness)
-            }
+            Some(reflection) if material.specular => self.specular(place, reflection, color, metallic, roughness),
             _ => Vec3::ZERO,
         };
         let coverage = if material.alpha == AlphaMode::Blend { base.w.clamp(0.0, 1.0) } else { 1.0 };
@@ -101,6 +103,21 @@ impl Shader<'_> {
         }
     }
 
+    /// Diffuse radiance for albedo 1, not clamped: from the light map where there is one, else from the vertices.
+    fn light(&self, place: &Place<'_>) -> Vec3 {
+        match place.sheet {
+            Some(sheet) => {
+                let uv = coordinates(&self.prt.geometry, 1, place.vertices, place.weights);
+                sheet.radiance(uv, self.bend(place).and_then(unit).unwrap_or(Vec3::Z))
+            }
+            None => {
+                let [a, b, c] = place.vertices.map(|v| self.radiance[v]);
+                let [wa, wb, wc] = place.weights;
+                a * wa + b * wb + c * wc
+            }
+        }
+    }
+
     fn base(&self, place: &Place<'_>) -> Vec4 {
         let factor = Vec4::from(place.material.base_color);
         let texel = self.texel(place.material.base_color_texture.as_ref(), place, Encoding::Srgb(self.srgb));
@@ -112,7 +129,7 @@ impl Shader<'_> {
     /// A texture at a place; white where the material has none.
     fn texel(&self, slot: Option<&TextureSlot>, place: &Place<'_>, encoding: Encoding<'_>) -> Vec4 {
         slot.map_or(Vec4::ONE, |slot| {
-            let uv = coordinates(&self.prt.geometry, slot, place.vertices, place.weights);
+            let uv = coordinates(&self.prt.geometry, slot.uv_set, place.vertices, place.weights);
             read(&self.prt.textures[slot.texture as usize], slot, uv, encoding)
         })
     }
@@ -138,18 +155,24 @@ impl Shader<'_> {
     fn normal(&self, place: &Place<'_>) -> Vec3 {
         let geometry = &self.prt.geometry;
         let smooth = Vec3::from(place.interpolate(&geometry.normals));
-        let bent = match &place.material.normal_texture {
-            Some(slot) if !geometry.tangents.is_empty() => {
+        let bent = match self.bend(place) {
+            Some(bend) => {
                 let [x, y, z, w] = place.interpolate(&geometry.tangents);
                 let tangent = Vec3::new(x, y, z);
                 let bitangent = smooth.cross(tangent) * if w < 0.0 { -1.0 } else { 1.0 };
-                let map = self.texel(Some(slot), place, Encoding::Linear).truncate() * 2.0 - 1.0;
-                let scale = place.material.normal_scale;
-                tangent * (map.x * scale) + bitangent * (map.y * scale) + smooth * map.z
+                tangent * bend.x + bitangent * bend.y + smooth * bend.z
             }
-            _ => smooth,
+            None => smooth,
         };
         unit(bent).or_else(|| unit(smooth)).unwrap_or_else(|| self.geometric_normal(place))
+    }
+
+    /// What the normal map says in the tangent frame, not unit; none where there is no map or no tangents.
+    fn bend(&self, place: &Place<'_>) -> Option<Vec3> {
+        let slot = place.material.normal_texture.as_ref().filter(|_| !self.prt.geometry.tangents.is_empty())?;
+        let map = self.texel(Some(slot), place, Encoding::Linear).truncate() * 2.0 - 1.0;
+        let scale = place.material.normal_scale;
+        Some(map * Vec3::new(scale, scale, 1.0))
     }
 
     fn geometric_normal(&self, place: &Place<'_>) -> Vec3 {

@@ -35,9 +35,9 @@ pub(crate) fn read(texture: &Texture, slot: &TextureSlot, uv: Vec2, encoding: En
     top.lerp(bottom, fy)
 }
 
-/// The texture coordinates of a slot between three vertices; (0, 0) where the geometry has none.
-pub(crate) fn coordinates(geometry: &Geometry, slot: &TextureSlot, vertices: [usize; 3], weights: [f32; 3]) -> Vec2 {
-    let set = if slot.uv_set == 0 { &geometry.uv0 } else { &geometry.uv1 };
+/// Texture coordinates of set 0 or 1 between three vertices; (0, 0) where the geometry has none.
+pub(crate) fn coordinates(geometry: &Geometry, uv_set: u8, vertices: [usize; 3], weights: [f32; 3]) -> Vec2 {
+    let set = if uv_set == 0 { &geometry.uv0 } else { &geometry.uv1 };
     if set.is_empty() {
         return Vec2::ZERO;
     }
@@ -45,7 +45,7 @@ pub(crate) fn coordinates(geometry: &Geometry, slot: &TextureSlot, vertices: [us
 }
 
 /// The two texels around a coordinate along one axis and the share of the second.
-fn neighbours(coordinate: f32, size: u32, wrap: Wrap) -> ([usize; 2], f32) {
+pub(crate) fn neighbours(coordinate: f32, size: u32, wrap: Wrap) -> ([usize; 2], f32) {
     let x = coordinate * size as f32 - 0.5;
     if !x.is_finite() {
         return ([0, 0], 0.0);

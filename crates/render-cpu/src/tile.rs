@@ -1,6 +1,7 @@
 //! Drawing one tile: depth first, then colours, then what lets light through.
 
 use crate::facet::Facet;
+use crate::map::Sheet;
 use crate::raster::{Piece, Window};
 use crate::shade::{Place, Shader};
 use crate::view::View;
@@ -19,6 +20,8 @@ pub(crate) struct Stage<'a> {
     pub(crate) projected: &'a [DVec3],
     /// Material of each triangle.
     pub(crate) materials: &'a [u32],
+    /// Light map of each triangle; `None` where no mesh has one.
+    pub(crate) maps: Option<(&'a [u32], &'a [Sheet])>,
 }
 
 /// The samples of a tile: depth, the nearest triangle, colour.
@@ -36,6 +39,7 @@ struct Held<'a> {
     facet: Facet,
     vertices: [usize; 3],
     material: &'a Material,
+    sheet: Option<&'a Sheet>,
 }
 
 impl<'a> Stage<'a> {
@@ -102,13 +106,15 @@ impl<'a> Stage<'a> {
         let prt = self.shader.prt;
         let vertices = prt.geometry.triangles[triangle as usize].map(|v| v as usize);
         let material = &prt.materials[self.materials[triangle as usize] as usize];
-        Held { triangle, facet: Facet::new(vertices.map(|v| self.projected[v])), vertices, material }
+        let sheet = self.maps.and_then(|(of_triangle, sheets)| sheets.get(of_triangle[triangle as usize] as usize));
+        Held { triangle, facet: Facet::new(vertices.map(|v| self.projected[v])), vertices, material, sheet }
     }
 
     fn place(&self, held: &Held<'a>, column: u32, row: u32) -> Place<'a> {
         let centre = self.view.centre(column, row);
         Place {
             material: held.material,
+            sheet: held.sheet,
             vertices: held.vertices,
             weights: held.facet.weights(centre),
             direction: self.view.direction(centre),

@@ -11,6 +11,7 @@
 //! file says. Coefficients come from [`Basis::conversion`], [`Basis::project_irradiance`] or [`Basis::project_radiance`].
 
 mod batch;
+mod change;
 mod fit;
 mod h;
 pub mod hl2;

@@ -54,6 +54,14 @@ impl Rgb {
         windowed
     }
 
+    /// The light in exactly `bands` bands: the first of them, or all and black ones above.
+    #[must_use]
+    pub fn with_bands(&self, bands: Bands) -> Self {
+        let mut light = self.truncated(bands);
+        light.values.resize(bands.coefficients(), [0.0; 3]);
+        Self { bands, ..light }
+    }
+
     /// The first `bands` bands, or all of them when there are fewer.
     #[must_use]
     pub fn truncated(&self, bands: Bands) -> Self {
