@@ -33,9 +33,17 @@ pub(crate) const NEAR_WORTH: f32 = 8.0;
 /// # Errors
 /// As [`bake`]; no rays are traced but those of a small survey, and of the look for edges to halve.
 pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
+    plan_with(scene, settings, &Extras::default())
+}
+
+/// [`plan`] for a bake with light maps or a volume.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_with(scene: &Scene, settings: &Settings, extras: &Extras) -> Result<Plan, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
-    Ok(prepare(scene, settings)?.plan)
+    Ok(prepare(scene, settings, extras)?.plan)
 }
 
 /// Precomputes how every vertex of a scene answers to distant light.
@@ -57,7 +65,7 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
 pub fn bake_with(scene: &Scene, settings: &Settings, extras: &Extras, progress: ProgressFn<'_>) -> Result<Prt, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, progress)?;
-    let Prepared { world, receivers, plan, traced } = prepare(scene, settings)?;
+    let Prepared { world, receivers, plan, traced } = prepare(scene, settings, extras)?;
     let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
     // Where nothing is traced no directions are needed: the smallest set stands in.
     let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };
@@ -155,8 +163,12 @@ impl<'a> Run<'a> {
         }
         self.summarise(&repair);
         let (plan, achieved) = (self.plan.clone(), std::mem::take(&mut self.achieved));
-        let mut prt =
-            bundle(scene, &self.receivers, self.settings, Baked { transfer: &transfer, openness, plan, achieved });
+        let mut prt = bundle(
+            scene,
+            &self.receivers,
+            self.settings,
+            Baked { transfer: &transfer, openness, plan, achieved, extras },
+        );
         self.done(scene, &transfer, extras).add(extras, &mut prt)?;
         Ok(prt)
     }

@@ -23,6 +23,13 @@ pub struct Extras {
     pub light: Option<FixedLight>,
 }
 
+impl Extras {
+    /// Whether diffuse light will be drawn by the normals of normal maps.
+    pub(crate) fn is_directional(&self) -> bool {
+        self.maps.as_ref().is_some_and(|maps| maps.sheets.iter().any(|sheet| sheet.directional))
+    }
+}
+
 /// A light that is baked in.
 #[derive(Debug, Clone)]
 pub struct FixedLight {

@@ -42,7 +42,7 @@ mod survey;
 mod volume;
 mod world;
 
-pub use crate::bake::{ProgressFn, bake, bake_with, plan};
+pub use crate::bake::{ProgressFn, bake, bake_with, plan, plan_with};
 pub use crate::maps::{MapSettings, SheetSettings};
 pub use crate::volume::VolumeSettings;
 pub use error::Error;

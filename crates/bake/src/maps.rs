@@ -56,6 +56,9 @@ pub struct SheetSettings {
     pub width: u32,
     /// Texels along v.
     pub height: u32,
+    /// Whether its light is kept for every normal: where a normal map is. Elsewhere the first function is enough, in a basis whose first
+    /// function alone is a light map.
+    pub directional: bool,
 }
 
 /// What was found of one sheet.
@@ -90,16 +93,16 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     if settings.stitch && settings.dilation > 0 {
         stitch_all(done, settings, &mut sheets);
     }
-    let converter = Converter::new(settings.basis, functions);
     let mut sheet_of_mesh = vec![None; prt.meshes.len()];
     for (index, sheet) in (0..).zip(&settings.sheets) {
         sheet.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(index));
     }
-    let finish = |mut gathered: Gathered| {
+    let finish = |(mut gathered, sheet): (Gathered, &SheetSettings)| {
         (1..settings.dilation).for_each(|_| gathered.plate.dilate());
-        Sheet { layers: layers(&gathered, &converter, settings.basis, shape) }
+        let held = if sheet.directional { settings.basis } else { settings.basis.cut(1).unwrap_or(settings.basis) };
+        Sheet { layers: layers(&gathered, &Converter::new(held, functions), held, shape) }
     };
-    let sheets = sheets.into_iter().map(finish).collect();
+    let sheets = sheets.into_iter().zip(&settings.sheets).map(finish).collect();
     Ok(Maps { basis: settings.basis, light: done.map_light(), sheets, sheet_of_mesh })
 }
 

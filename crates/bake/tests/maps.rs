@@ -17,7 +17,7 @@ fn unwrapped(mut scene: Scene, side: u32) -> (Scene, SheetSettings) {
     let meshes: Vec<usize> = (0..scene.meshes.len()).collect();
     let atlas = unwrap(&mut scene, &meshes, &Unwrap { density: Density::Side(side), padding: 2 }, &|_, _, _| {})
         .expect("it can be unwrapped");
-    (scene, SheetSettings { meshes, width: atlas.width, height: atlas.height })
+    (scene, SheetSettings { meshes, width: atlas.width, height: atlas.height, directional: true })
 }
 
 fn settings(basis: Basis, sheet: &SheetSettings) -> MapSettings {
@@ -190,7 +190,7 @@ fn cylinder() -> (Scene, SheetSettings) {
     mesh.triangles =
         (0..quads).flat_map(|k| [[2 * k, 2 * k + 2, 2 * k + 1], [2 * k + 1, 2 * k + 2, 2 * k + 3]]).collect();
     scene.meshes.insert(0, mesh);
-    (scene, SheetSettings { meshes: vec![0], width: 48, height: 16 })
+    (scene, SheetSettings { meshes: vec![0], width: 48, height: 16, directional: true })
 }
 
 fn bilinear(texels: &[[f32; 3]], width: u32, height: u32, u: f32, v: f32) -> f32 {

@@ -51,6 +51,9 @@ impl MapLight {
 
 /// The coefficients of one sheet. Layer `function * depth + i` is coefficient `i` of the light in a function ([`MapLight::depth`]); texel
 /// row 0 is at v = 0.
+///
+/// A sheet holds all functions of the basis, or the first few where the others are 0 and the basis can be cut there: the modified H-basis
+/// holds one where no normal map is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
     /// The layers.
@@ -77,9 +80,10 @@ impl Sheet {
         let plane = layers.width as usize * layers.height as usize;
         let channels = layers.channels as usize;
         let rgb = |values: &[f32]| [values[0], values[1 % channels], values[2 % channels]];
+        let held = layers.count as usize / depth;
         let function = |k: usize| {
             let mut sum = vec![[0.0f32; 3]; plane];
-            for i in 0..depth {
+            for i in 0..if k < held { depth } else { 0 } {
                 let factor = match maps.light {
                     MapLight::Fixed { .. } => [1.0; 3],
                     MapLight::Relightable { .. } => light[i],

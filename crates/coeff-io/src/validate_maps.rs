@@ -21,8 +21,7 @@ impl Check<'_> {
         self.header(!drawn || !prt.geometry.uv1.is_empty(), || {
             "there are light maps but no second texture coordinates".into()
         })?;
-        let layers = maps.basis.count() * maps.light.depth();
-        maps.sheets.iter().enumerate().try_for_each(|(i, sheet)| self.sheet(i, sheet, layers))
+        maps.sheets.iter().enumerate().try_for_each(|(i, sheet)| self.sheet(i, sheet, maps))
     }
 
     /// Bands that exist: what [`MapLight::depth`] needs.
@@ -31,15 +30,16 @@ impl Check<'_> {
         self.header(Bands::new(*bands).is_some(), || format!("{bands} bands of {whose} are not supported"))
     }
 
-    fn sheet(&self, index: usize, sheet: &Sheet, expected: usize) -> Result<(), Error> {
+    fn sheet(&self, index: usize, sheet: &Sheet, maps: &Maps) -> Result<(), Error> {
         let layers = &sheet.layers;
         let sides = 1..=LARGEST_SIDE;
         self.header(sides.contains(&layers.width) && sides.contains(&layers.height), || {
             format!("sheet {index} has {}x{} texels", layers.width, layers.height)
         })?;
-        self.header(layers.count as usize == expected && matches!(layers.channels, 1 | 3), || {
+        self.header(maps.holds(layers.count) && matches!(layers.channels, 1 | 3), || {
+            let (name, depth) = (maps.basis.name(), maps.light.depth());
             format!(
-                "sheet {index} has {} layers of {} channels; there must be {expected} of 1 or 3",
+                "sheet {index} has {} layers of {} channels; {name} takes {depth} layers of 1 or 3 per function",
                 layers.count, layers.channels
             )
         })?;
