@@ -140,6 +140,10 @@ fn signed_changes_never_panic() {
             let (result, peak) = read(&bytes);
             assert!(peak <= 16 * bytes.len() + SLACK, "byte {at} = {value:#x}: {peak} bytes of memory");
             refused += usize::from(result.is_err());
+            let sheets = result.ok().and_then(|prt| prt.maps).into_iter().flat_map(|maps| maps.sheets);
+            for sheet in sheets {
+                assert!(sheet.layers.decode().iter().all(|v| v.is_finite()), "byte {at} = {value:#x}");
+            }
         }
     }
     assert!(refused > 1000, "only {refused} changes were refused");

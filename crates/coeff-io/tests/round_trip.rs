@@ -87,8 +87,8 @@ fn absent_maps_and_volumes_take_two_bytes() {
     let with = sample();
     let maps = Prt { maps: None, ..with.clone() };
     let neither = Prt { maps: None, volume: None, ..with.clone() };
-    // origin, spacing, cells, light, channels, resolution, reach; basis, light, two sheets, the sheets of two meshes.
-    let (volume, map) = (12 + 12 + 12 + 8 + 4 + 4 + 4, 8 + 3 + 4 + 8 + 11 + 4 + 8 + 2 * 20 + 8 + 5 + 1);
+    // origin, spacing, cells, light, channels, resolution, reach; basis, light, five sheets, the sheets of two meshes.
+    let (volume, map) = (12 + 12 + 12 + 8 + 4 + 4 + 4, 8 + 3 + 4 + 8 + 11 + 4 + 8 + 5 * 20 + 8 + 5 + 1);
     assert_eq!(header(&maps) - header(&neither), volume);
     assert_eq!(header(&with) - header(&maps), map);
 }

@@ -179,18 +179,37 @@ fn texture(name: &str, width: u32, height: u32) -> Texture {
     Texture { name: name.into(), width, height, rgba, wrap: [Wrap::Repeat, Wrap::Mirror] }
 }
 
+/// A sheet in every encoding.
 fn maps() -> Maps {
-    let sheet = |width: u32, height: u32, channels: u32| {
-        let numbers = 3 * width * height * channels;
-        let values: Vec<f32> = (0..numbers).map(|i| 0.75 - 0.125 * i as f32).collect();
-        Sheet { layers: Layers::exact([width, height, 3, channels], &values) }
-    };
+    let shape = |width, height, channels| [width, height, 3, channels];
+    let values = |n: u32| -> Vec<f32> { (0..n).map(|i| 0.75 - 0.125 * i as f32).collect() };
+    let exact = Layers::exact(shape(2, 1, 3), &values(18));
+    let charts = [4, u32::MAX, 2];
+    let curves = [Curve::Srgb, Curve::Linear, Curve::Linear];
+    let coding = Coding { charts: &charts, curves: &curves, ..Coding::plain(Encoding::U8) };
+    let eight = Layers::encode(shape(1, 3, 1), &values(9), &coding).layers;
+    let half = Layers::encode(shape(1, 1, 1), &values(3), &Coding::plain(Encoding::F16)).layers;
     Maps {
         basis: Basis::Hl2,
         light: MapLight::Fixed { probe: "builtin:sky".into(), bands: 5 },
-        sheets: vec![sheet(2, 1, 3), sheet(1, 3, 1)],
+        sheets: [exact, eight, half, blocks(Encoding::Bc1), blocks(Encoding::Bc6h)]
+            .map(|layers| Sheet { layers })
+            .into(),
         sheet_of_mesh: vec![Some(1), None],
     }
+}
+
+/// Three layers of 3x5 texels in one channel: six blocks by hand, so that no encoder decides on them.
+fn blocks(encoding: Encoding) -> Layers {
+    let block: Vec<u8> = match encoding {
+        Encoding::Bc1 => vec![0x00, 0xF8, 0xE0, 0x07, 0xE4, 0x1B, 0xFF, 0x00],
+        _ => (15_u128 | 0x15_u128 << 39 | 7 << 65).to_le_bytes().into(),
+    };
+    let ranges = [[-0.5_f32, 0.5], [0.0, 2.0], [0.25, 0.25]];
+    let mut bytes = vec![0, u8::from(encoding == Encoding::Bc1), 0];
+    bytes.extend(ranges.as_flattened().iter().flat_map(|v| v.to_le_bytes()));
+    bytes.extend(block.repeat(6));
+    Layers { width: 3, height: 5, count: 3, channels: 1, encoding, bytes }
 }
 
 /// Two coarse cells, of which the first is split.
