@@ -42,7 +42,7 @@ fn draw_shiny(at: Shiny) -> @location(0) vec4<f32> {
     let geometric = across * select(-1.0, 1.0, dot(across, to_eye) > 0.0);
     let normal = shading_normal(at, geometric);
     let specular = mirrored(point, normal, to_eye) * saturate(at.lit.w);
-    return composite(point, at.lit.rgb, specular, glow(at.uv));
+    return composite(point, diffuse_light(at.lit.rgb, at.uv), specular, glow(at.uv));
 }
 
 fn mirrored(point: Point, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
@@ -58,16 +58,10 @@ fn shading_normal(at: Shiny, geometric: vec3<f32>) -> vec3<f32> {
     if !normal_textured {
         return plain;
     }
-    let texel = textureSampleLevel(normal_texture, normal_sampler, slot_uv(material.normal, at.uv), 0.0);
-    let bent = (2.0 * texel.xyz - 1.0) * vec3<f32>(material.normal_scale, material.normal_scale, 1.0);
+    let bent = bend(at.uv);
     let handed = select(-1.0, 1.0, at.tangent.w >= 0.0);
     let bitangent = handed * cross(at.normal, at.tangent.xyz);
     return unit_or(at.tangent.xyz * bent.x + bitangent * bent.y + at.normal * bent.z, plain);
-}
-
-// `v` made unit, or `other` made unit where `v` is too short to have a direction.
-fn unit_or(v: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
-    return normalize(select(other, v, length(v) >= 1e-12));
 }
 
 // Light of the probe around a unit direction (light frame), blurred as roughness asks.

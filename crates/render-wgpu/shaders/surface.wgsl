@@ -1,5 +1,5 @@
 // Diffuse surfaces: textures, masks, opacity. Mirrors the surface shading of render-cpu; docs/shading.md, Surface 1 to 5.
-// Needs view.wgsl.
+// Needs view.wgsl, and `diffuse_light` of vertex_light.wgsl or sheet.wgsl.
 struct Slot {
     // Rows of the transform of (u, v, 1); the fourth of the first is 1 for the second set of coordinates.
     u: vec4<f32>,
@@ -63,7 +63,7 @@ fn place_diffuse(
 @fragment
 fn draw_diffuse(at: Diffuse) -> @location(0) vec4<f32> {
     let point = surface(at.uv, at.color);
-    return composite(point, at.lit, vec3<f32>(0.0), glow(at.uv));
+    return composite(point, diffuse_light(at.lit, at.uv), vec3<f32>(0.0), glow(at.uv));
 }
 
 struct Point {
@@ -89,12 +89,26 @@ fn surface(uv: vec4<f32>, color: vec4<f32>) -> Point {
     }
     point.metallic = saturate(point.metallic);
     point.roughness = saturate(point.roughness);
+    if view.white > 0.5 {
+        return Point(vec4<f32>(vec3<f32>(1.0), point.base.a), 0.0, point.roughness);
+    }
     return point;
 }
 
 fn slot_uv(slot: Slot, uv: vec4<f32>) -> vec2<f32> {
     let place = vec3<f32>(select(uv.xy, uv.zw, slot.u.w > 0.5), 1.0);
     return vec2<f32>(dot(slot.u.xyz, place), dot(slot.v.xyz, place));
+}
+
+// What the normal map says in the tangent frame, not unit.
+fn bend(uv: vec4<f32>) -> vec3<f32> {
+    let texel = textureSampleLevel(normal_texture, normal_sampler, slot_uv(material.normal, uv), 0.0);
+    return (2.0 * texel.xyz - 1.0) * vec3<f32>(material.normal_scale, material.normal_scale, 1.0);
+}
+
+// `v` made unit, or `other` made unit where `v` is too short to have a direction.
+fn unit_or(v: vec3<f32>, other: vec3<f32>) -> vec3<f32> {
+    return normalize(select(other, v, length(v) >= 1e-12));
 }
 
 fn glow(uv: vec4<f32>) -> vec3<f32> {

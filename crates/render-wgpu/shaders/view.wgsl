@@ -8,6 +8,8 @@ struct View {
     largest: f32,
     // Half the picture's width and height at view depth 1, as world vectors: d = forward + x * right + y * up.
     right: vec3<f32>,
+    // 1 where surfaces are white, else 0.
+    white: f32,
     up: vec3<f32>,
     // The rows that give clip x and y: right and up divided by their squared lengths.
     clip_x: vec3<f32>,

@@ -17,6 +17,7 @@ struct Triangle {
     corners: [Vec3; 3],
     indices: [u32; 3],
     material: u32,
+    sheet: Option<u32>,
 }
 
 impl Blended {
@@ -25,10 +26,11 @@ impl Blended {
         let position = |index: u32| Vec3::from(prt.geometry.positions[index as usize]);
         let triangles = draws
             .iter()
-            .flat_map(|draw| draw.triangles.clone().map(|triangle| (draw.material, triangle)))
-            .map(|(material, triangle)| {
+            .flat_map(|draw| draw.triangles.clone().map(move |triangle| (draw, triangle)))
+            .map(|(draw, triangle)| {
                 let indices = prt.geometry.triangles[triangle as usize];
-                Triangle { corners: indices.map(position), indices, material }
+                let corners = indices.map(position);
+                Triangle { corners, indices, material: draw.material, sheet: draw.sheet }
             })
             .collect::<Vec<_>>();
         if triangles.is_empty() {
@@ -46,16 +48,17 @@ impl Blended {
         Ok(Some(Self { triangles, indices }))
     }
 
-    /// Uploads the indices farthest first and returns the runs of one material in them.
+    /// Uploads the indices farthest first and returns the runs of one material and light map in them.
     pub(crate) fn sort(&self, gpu: &Gpu, view: &gpu_data::View) -> Vec<Draw> {
         let order = self.order(view);
         let indices = order.iter().map(|&i| self.triangles[i].indices).collect::<Vec<_>>();
         gpu.queue.write_buffer(&self.indices, 0, bytemuck::cast_slice(&indices));
         let mut draws: Vec<Draw> = Vec::new();
-        for (place, material) in (0..).zip(order.iter().map(|&i| self.triangles[i].material)) {
+        for (place, triangle) in (0..).zip(order.iter().map(|&i| &self.triangles[i])) {
+            let &Triangle { material, sheet, .. } = triangle;
             match draws.last_mut() {
-                Some(draw) if draw.material == material => draw.triangles.end = place + 1,
-                _ => draws.push(Draw { material, triangles: place..place + 1 }),
+                Some(draw) if draw.material == material && draw.sheet == sheet => draw.triangles.end = place + 1,
+                _ => draws.push(Draw { material, sheet, triangles: place..place + 1 }),
             }
         }
         draws

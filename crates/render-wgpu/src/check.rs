@@ -8,6 +8,9 @@ pub(crate) fn check(prt: &Prt) -> Result<(), Error> {
     check_attributes(prt)?;
     check_transfer(prt)?;
     check_meshes(prt)?;
+    if let Some(fault) = prt.maps.as_ref().and_then(|maps| maps.fault(prt)) {
+        return Err(Error::invalid("the file", format!("{fault}; bake the scene again")));
+    }
     for texture in &prt.textures {
         if texture.rgba.len() as u64 != u64::from(texture.width) * u64::from(texture.height) {
             let problem = format!("{} texels do not fill {}x{}", texture.rgba.len(), texture.width, texture.height);

@@ -1,8 +1,9 @@
 //! One picture: what is asked for and what comes back.
 
 use crate::Error;
-use coeff_io::Camera;
+use coeff_io::{Camera, Maps};
 use glam::Quat;
+use sh_math::hemisphere::Basis;
 
 /// Most columns or rows of a picture.
 const MAX_SIZE: u32 = 16384;
@@ -28,10 +29,17 @@ pub struct Frame {
     pub supersample: u32,
     /// Whether the light probe is drawn behind the scene (else black).
     pub sky: bool,
+    /// Whether surfaces have their own colours; else they are white, and the picture is the light alone.
+    pub albedo: bool,
+    /// The basis that light maps are drawn in; their own where it is none.
+    pub basis: Option<Basis>,
+    /// How many functions of that basis are drawn; all where it is none.
+    pub functions: Option<u32>,
 }
 
 impl Frame {
-    /// A frame with nothing but the light: not turned, exposure 0, no tone curve, no bloom, one sample per pixel, with sky.
+    /// A frame with nothing but the light: not turned, exposure 0, no tone curve, no bloom, one sample per pixel, with sky,
+    /// light maps in their own basis.
     #[must_use]
     pub fn plain(camera: Camera, width: u32, height: u32) -> Self {
         Self {
@@ -44,11 +52,21 @@ impl Frame {
             bloom: 0.0,
             supersample: 1,
             sky: true,
+            albedo: true,
+            basis: None,
+            functions: None,
         }
     }
 
+    /// [`Frame::check`], and whether the file's light maps can be shown so; the basis that they are drawn in, if there are any.
+    pub(crate) fn check_for(&self, maps: Option<&Maps>) -> Result<Option<Basis>, Error> {
+        self.check()?;
+        Maps::drawn_in(maps, self.basis, self.functions, self.rotation)
+            .map_err(|problem| Error::invalid("the frame", problem))
+    }
+
     /// Checks every value on its own; whether the sizes fit a GPU is the renderer's affair.
-    pub(crate) fn check(&self) -> Result<(), Error> {
+    fn check(&self) -> Result<(), Error> {
         let wrong = |problem: &str| Err(Error::invalid("the frame", problem));
         let camera = &self.camera;
         let numbers = [camera.eye, camera.target, camera.up];

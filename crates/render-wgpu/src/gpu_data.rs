@@ -13,7 +13,7 @@ pub(crate) struct View {
     pub(crate) forward: [f32; 3],
     pub(crate) largest: f32,
     pub(crate) right: [f32; 3],
-    pub(crate) pad0: f32,
+    pub(crate) white: f32,
     pub(crate) up: [f32; 3],
     pub(crate) pad1: f32,
     pub(crate) clip_x: [f32; 3],
@@ -55,6 +55,16 @@ pub(crate) struct Material {
 pub(crate) struct Chunk {
     pub(crate) vertices: u32,
     pub(crate) coefficients: u32,
+}
+
+/// A part of a light map (sheet_fill.wgsl).
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+pub(crate) struct Strip {
+    pub(crate) width: u32,
+    pub(crate) rows: u32,
+    pub(crate) first_row: u32,
+    pub(crate) stored: u32,
 }
 
 /// A disc of light in the sky (sky.wgsl).
@@ -103,7 +113,7 @@ mod tests {
     }
 
     fn view_layout() -> Layout {
-        rust_layout!(View, eye, near, forward, largest, right, up, clip_x, clip_y, light_from_world)
+        rust_layout!(View, eye, near, forward, largest, right, white, up, clip_x, clip_y, light_from_world)
     }
 
     #[test]
@@ -122,13 +132,15 @@ mod tests {
             normal,
             glow
         );
-        for shader in [shaders::DIFFUSE, shaders::SHINY] {
+        for shader in [shaders::surface(false, None), shaders::surface(true, None)] {
             assert_eq!(wgsl_layout(shader, "View"), view_layout(), "View in {}", shader.name);
             assert_eq!(wgsl_layout(shader, "Material"), material, "Material in {}", shader.name);
         }
         assert_eq!(wgsl_layout(shaders::SKY, "View"), view_layout(), "View in sky");
-        assert_eq!(wgsl_layout(shaders::SHINY, "Slot"), rust_layout!(Slot, u, v), "Slot");
+        assert_eq!(wgsl_layout(shaders::surface(true, None), "Slot"), rust_layout!(Slot, u, v), "Slot");
         assert_eq!(wgsl_layout(shaders::RELIGHT, "Chunk"), rust_layout!(Chunk, vertices, coefficients), "Chunk");
+        let strip = rust_layout!(Strip, width, rows, first_row, stored);
+        assert_eq!(wgsl_layout(shaders::SHEET_FILL, "Strip"), strip, "Strip");
         let lamp = rust_layout!(Lamp, direction, chord_squared, radiance);
         assert_eq!(wgsl_layout(shaders::SKY, "Lamp"), lamp, "Lamp");
         let post = rust_layout!(Post, exposure, supersample, bloom, levels, largest);

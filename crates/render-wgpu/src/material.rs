@@ -3,6 +3,7 @@
 use crate::texture::{Encoding, Textures};
 use crate::{Error, Gpu, geometry, gpu_data};
 use coeff_io::{AlphaMode, Material, Prt, TextureSlot};
+use sh_math::hemisphere::Basis;
 
 /// What a pipeline is specialised for: materials with the same variant share it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -19,10 +20,12 @@ pub(crate) struct Variant {
     pub(crate) metallic_roughness_textured: bool,
     pub(crate) normal_textured: bool,
     pub(crate) glow_textured: bool,
+    /// Lit by a light map in this basis, else by the vertices.
+    pub(crate) basis: Option<Basis>,
 }
 
 impl Variant {
-    /// What a material of a file with or without tangents calls for.
+    /// What a material of a file with or without tangents calls for where no light map lies upon it.
     pub(crate) fn of(material: &Material, has_tangents: bool) -> Self {
         let fades = material.alpha == AlphaMode::Blend;
         Self {
@@ -34,12 +37,14 @@ impl Variant {
             metallic_roughness_textured: material.metallic_roughness_texture.is_some(),
             normal_textured: material.specular && has_tangents && material.normal_texture.is_some(),
             glow_textured: material.emissive_texture.is_some(),
+            basis: None,
         }
     }
 
-    /// The pipeline constants of surface.wgsl.
-    pub(crate) fn constants(self) -> [(&'static str, f64); 7] {
-        [
+    /// The pipeline constants of surface.wgsl and sheet.wgsl.
+    pub(crate) fn constants(self) -> Vec<(&'static str, f64)> {
+        let functions = self.basis.map(|basis| ("functions", basis.count() as f64));
+        let switches = [
             ("base_textured", self.base_textured),
             ("metallic_roughness_textured", self.metallic_roughness_textured),
             ("normal_textured", self.normal_textured),
@@ -48,21 +53,49 @@ impl Variant {
             ("blended", self.blended),
             ("fades", self.fades),
         ]
-        .map(|(name, on)| (name, f64::from(u8::from(on))))
+        .map(|(name, on)| (name, f64::from(u8::from(on))));
+        switches.into_iter().chain(functions).collect()
     }
 }
 
 /// One material, ready to be bound.
 #[derive(Debug)]
 pub(crate) struct BoundMaterial {
-    pub(crate) variant: Variant,
+    variant: Variant,
+    /// Whether a normal map bends the light of light maps.
+    bends: bool,
     pub(crate) bindings: wgpu::BindGroup,
+}
+
+impl BoundMaterial {
+    /// The variant of a surface with this material, lit by a map in `basis` or by its vertices.
+    pub(crate) fn variant(&self, basis: Option<Basis>) -> Variant {
+        let normal_textured = self.variant.normal_textured || basis.is_some() && self.bends;
+        Variant { basis, normal_textured, ..self.variant }
+    }
+
+    /// Whether it is drawn over what lies behind.
+    pub(crate) fn is_blended(&self) -> bool {
+        self.variant.blended
+    }
 }
 
 /// Uploads the materials and those textures that they show.
 pub(crate) fn upload(gpu: &Gpu, prt: &Prt, layout: &wgpu::BindGroupLayout) -> Result<Vec<BoundMaterial>, Error> {
     let mut textures = Textures::new(gpu)?;
-    prt.materials.iter().map(|material| bind(gpu, prt, layout, &mut textures, material)).collect()
+    let mapped = mapped(prt);
+    let materials = prt.materials.iter().zip(mapped);
+    materials.map(|(material, mapped)| bind(gpu, prt, layout, &mut textures, material, mapped)).collect()
+}
+
+/// Of each material whether a mesh shows it under a light map.
+fn mapped(prt: &Prt) -> Vec<bool> {
+    let mut mapped = vec![false; prt.materials.len()];
+    let sheets = prt.maps.iter().flat_map(|maps| &maps.sheet_of_mesh);
+    for (mesh, _) in prt.meshes.iter().zip(sheets).filter(|(_, sheet)| sheet.is_some()) {
+        mapped[mesh.material as usize] = true;
+    }
+    mapped
 }
 
 /// The layout of a material's bindings (group 1 of surface.wgsl).
@@ -92,12 +125,15 @@ fn bind(
     layout: &wgpu::BindGroupLayout,
     textures: &mut Textures,
     material: &Material,
+    mapped: bool,
 ) -> Result<BoundMaterial, Error> {
-    let variant = Variant::of(material, !prt.geometry.tangents.is_empty());
+    let has_tangents = !prt.geometry.tangents.is_empty();
+    let variant = Variant::of(material, has_tangents);
+    let bends = mapped && has_tangents && material.normal_texture.is_some();
     let slots = [
         (material.base_color_texture, Encoding::Srgb),
         (material.metallic_roughness_texture, Encoding::Linear),
-        (material.normal_texture.filter(|_| variant.normal_textured), Encoding::Linear),
+        (material.normal_texture.filter(|_| variant.normal_textured || bends), Encoding::Linear),
         (material.emissive_texture, Encoding::Srgb),
     ]
     .map(|(slot, encoding)| (slot.map(|slot| slot.texture), encoding));
@@ -116,7 +152,7 @@ fn bind(
         layout,
         entries: &entries.collect::<Vec<_>>(),
     });
-    Ok(BoundMaterial { variant, bindings })
+    Ok(BoundMaterial { variant, bends, bindings })
 }
 
 fn numbers(material: &Material) -> gpu_data::Material {

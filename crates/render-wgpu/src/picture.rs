@@ -23,6 +23,8 @@ pub(crate) fn create(
     let what = || format!("{label} of {width}x{height}");
     let limit = u64::from(gpu.limits.max_texture_dimension_2d);
     Error::check_fits(what, side, limit, "pixels along a side", "make it smaller or use the CPU renderer")?;
+    let limit = u64::from(gpu.limits.max_texture_array_layers);
+    Error::check_fits(|| label.into(), u64::from(layers), limit, "layers", "use the CPU renderer")?;
     Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },

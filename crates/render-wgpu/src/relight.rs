@@ -30,13 +30,22 @@ struct Part {
 impl Relight {
     /// Uploads the transfer in chunks of at most `chunk_bytes` bytes.
     pub(crate) fn new(gpu: &Gpu, transfer: &Transfer, chunk_bytes: u64) -> Result<Self, Error> {
+        Self::with(gpu, &pipeline(gpu, transfer.channels), transfer, chunk_bytes)
+    }
+
+    /// [`Relight::new`] with the [`pipeline`] of the transfer's channels, which many can share.
+    pub(crate) fn with(
+        gpu: &Gpu,
+        pipeline: &wgpu::ComputePipeline,
+        transfer: &Transfer,
+        chunk_bytes: u64,
+    ) -> Result<Self, Error> {
         let per_vertex = (transfer.bands as usize).pow(2) * transfer.channels as usize;
         let vertices = transfer.values.len() / per_vertex;
         let storage = wgpu::BufferUsages::STORAGE;
         let light_bytes = vec![0; (transfer.bands as usize).pow(2) * size_of::<[f32; 4]>()];
         let light = geometry::buffer(gpu, "light", &light_bytes, storage | wgpu::BufferUsages::COPY_DST)?;
         let lit = lit_buffer(gpu, vertices as u64)?;
-        let pipeline = pipeline(gpu, transfer.channels);
         let chunk = chunk_vertices(gpu, per_vertex as u64, chunk_bytes)?;
         let mut parts = Vec::new();
         for (index, values) in transfer.values.chunks(chunk * per_vertex).enumerate() {
@@ -57,10 +66,10 @@ impl Relight {
                 transfer.as_entire_binding(),
                 wgpu::BindingResource::Buffer(lit_part),
             ];
-            let bindings = bind(gpu, &pipeline, resources);
+            let bindings = bind(gpu, pipeline, resources);
             parts.push(Part { bindings, workgroups: numbers.vertices.div_ceil(WORKGROUP as u32) });
         }
-        Ok(Self { pipeline, light, parts, lit })
+        Ok(Self { pipeline: pipeline.clone(), light, parts, lit })
     }
 
     /// Diffuse radiance without albedo, three floats per vertex: a vertex buffer.
@@ -97,7 +106,8 @@ fn lit_buffer(gpu: &Gpu, vertices: u64) -> Result<wgpu::Buffer, Error> {
     }))
 }
 
-fn pipeline(gpu: &Gpu, channels: u32) -> wgpu::ComputePipeline {
+/// The dot products of a transfer of 1 or 3 channels.
+pub(crate) fn pipeline(gpu: &Gpu, channels: u32) -> wgpu::ComputePipeline {
     let module = shaders::RELIGHT.module(&gpu.device);
     gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(shaders::RELIGHT.name),

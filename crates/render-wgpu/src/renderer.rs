@@ -9,15 +9,17 @@ use crate::{Error, Frame, Gpu, Image, check, gpu_data, material, picture, reflec
 use coeff_io::Prt;
 use glam::Quat;
 use probe_io::Environment;
-use sh_math::{Bands, Rgb};
+use sh_math::{Bands, Rgb, hemisphere::Basis};
 use std::time::{Duration, Instant};
 
 /// A scene and its light on the GPU.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
-    /// Coefficients of the probe as it lies, not turned.
+    /// Coefficients of the probe as it lies, not turned, in as many bands as transfer or maps have.
     light: Rgb,
+    /// Bands of the transfer.
+    bands: Bands,
     /// The rotation that the vertices are lit for.
     lit_for: Option<Quat>,
     relight: Relight,
@@ -67,14 +69,16 @@ impl Renderer {
         };
         let reflected = layouts.reflection.as_ref().map(|layout| reflection::upload(gpu, environment, layout));
         let (view, view_bindings) = view_buffer(device, &layouts.view);
+        let sky = Sky::new(gpu, environment, &layouts.view, format)?;
         Ok(Self {
-            light: sh_math::project(bands, environment.samples()),
+            light: sh_math::project(prt.light_bands().unwrap_or(bands), environment.samples()),
+            bands,
             lit_for: None,
             near: view::near_plane(prt),
             view,
             view_bindings,
-            surfaces: Surfaces::new(gpu, prt, &layouts, reflected.transpose()?, relight.lit().clone(), format)?,
-            sky: Sky::new(gpu, environment, &layouts.view, format)?,
+            surfaces: Surfaces::new(gpu, prt, layouts, reflected.transpose()?, relight.lit().clone(), format)?,
+            sky,
             finish: Finish::new(gpu),
             relight,
             targets: None,
@@ -88,10 +92,10 @@ impl Renderer {
     /// # Errors
     /// [`Error::Invalid`] for a frame that makes no sense, [`Error::TooLarge`] for one beyond the GPU's limits.
     pub fn draw(&mut self, frame: &Frame) -> Result<Image, Error> {
-        frame.check()?;
+        let basis = frame.check_for(self.surfaces.maps())?;
         let gpu = self.gpu.clone();
         gpu.guarded("drawing", || {
-            let mut encoder = self.record(frame)?;
+            let mut encoder = self.record(frame, basis)?;
             let targets = self.targets.as_ref().ok_or_else(|| Error::invalid("the frame", "nothing was drawn"))?;
             let linear = Readback::record(&gpu, &mut encoder, &targets.linear)?;
             let display = Readback::record(&gpu, &mut encoder, &targets.display)?;
@@ -110,12 +114,12 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::draw`].
     pub fn time(&mut self, frame: &Frame) -> Result<Timings, Error> {
-        frame.check()?;
+        let basis = frame.check_for(self.surfaces.maps())?;
         let gpu = self.gpu.clone();
         gpu.guarded("drawing", || {
             let start = Instant::now();
             let relit = self.lit_for != Some(frame.rotation);
-            let encoder = self.record(frame)?;
+            let encoder = self.record(frame, basis)?;
             gpu.queue.submit([encoder.finish()]);
             let record = start.elapsed();
             gpu.wait()?;
@@ -129,10 +133,11 @@ impl Renderer {
         &self.light
     }
 
-    /// Lights the vertices by other coefficients, such as windowed ones; sky and reflections stay.
+    /// Lights vertices and relightable maps by other coefficients, such as windowed ones; sky and reflections stay.
     pub fn set_light(&mut self, light: Rgb) {
         self.light = light;
         self.lit_for = None;
+        self.surfaces.unlight();
     }
 
     /// Number of surface pipelines, one for each kind of material in use.
@@ -142,7 +147,7 @@ impl Renderer {
     }
 
     /// Records all passes of a frame into the targets, which it creates where their size has changed.
-    fn record(&mut self, frame: &Frame) -> Result<wgpu::CommandEncoder, Error> {
+    fn record(&mut self, frame: &Frame, basis: Option<Basis>) -> Result<wgpu::CommandEncoder, Error> {
         let gpu = self.gpu.clone();
         let size = Size::of(frame);
         let targets = match self.targets.take() {
@@ -151,9 +156,11 @@ impl Renderer {
         };
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if self.lit_for != Some(frame.rotation) {
-            self.relight.record(&gpu, &mut encoder, &self.light.rotated(frame.rotation.normalize()));
+            let light = self.light.rotated(frame.rotation.normalize()).with_bands(self.bands);
+            self.relight.record(&gpu, &mut encoder, &light);
             self.lit_for = Some(frame.rotation);
         }
+        self.surfaces.light_maps(&gpu, &mut encoder, &self.light, frame.rotation, basis)?;
         let view = view::view(frame, self.near, picture::largest(self.format));
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.record_scene(&mut encoder, &targets, &view, frame.sky);

@@ -7,19 +7,31 @@ pub(crate) struct Shader {
     pub(crate) text: &'static str,
 }
 
+/// Surfaces of one kind of diffuse light: without shine, and with a mirror of the light probe.
+macro_rules! surfaces {
+    ($name:literal, $($light:literal),+) => {
+        [
+            shader!(concat!("diffuse, ", $name), "view.wgsl", "surface.wgsl", $($light),+),
+            shader!(
+                concat!("shiny, ", $name),
+                "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl", $($light),+
+            ),
+        ]
+    };
+}
+
 macro_rules! shader {
-    ($name:literal, $($file:literal),+) => {
+    ($name:expr, $($file:literal),+) => {
         Shader { name: $name, text: concat!($(include_str!(concat!("../shaders/", $file))),+) }
     };
 }
 
+use sh_math::hemisphere::Basis;
+
 /// Dot products of transfer and light.
 pub(crate) const RELIGHT: Shader = shader!("relight", "relight.wgsl");
-/// Surfaces without shine.
-pub(crate) const DIFFUSE: Shader = shader!("diffuse", "view.wgsl", "surface.wgsl");
-/// Surfaces that mirror the light probe.
-pub(crate) const SHINY: Shader =
-    shader!("shiny", "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl");
+/// Coefficients of light maps in the basis that is drawn.
+pub(crate) const SHEET_FILL: Shader = shader!("sheet fill", "sheet_fill.wgsl");
 /// The light probe behind the scene.
 pub(crate) const SKY: Shader = shader!("sky", "view.wgsl", "equirect.wgsl", "fullscreen.wgsl", "sky.wgsl");
 /// Samples to pixels.
@@ -29,9 +41,39 @@ pub(crate) const BLOOM: Shader = shader!("bloom", "fullscreen.wgsl", "post.wgsl"
 /// Tone curve and encoding.
 pub(crate) const DISPLAY: Shader = shader!("display", "fullscreen.wgsl", "tone.wgsl", "display.wgsl");
 
+/// The light of vertices, then of maps in each family of bases.
+const SURFACES: [[Shader; 2]; 8] = [
+    surfaces!("lit at vertices", "vertex_light.wgsl"),
+    surfaces!("lit by spherical harmonics", "sheet.wgsl", "hemisphere_spherical.wgsl"),
+    surfaces!("lit by Half-Life 2", "sheet.wgsl", "hemisphere_hl2.wgsl"),
+    surfaces!("lit by hemispherical harmonics", "sheet.wgsl", "hemisphere_hsh.wgsl"),
+    surfaces!("lit by Makhotkin", "sheet.wgsl", "hemisphere_makhotkin.wgsl"),
+    surfaces!("lit by Zernike", "sheet.wgsl", "hemisphere_zernike.wgsl"),
+    surfaces!("lit by H", "sheet.wgsl", "hemisphere_h.wgsl"),
+    surfaces!("lit by modified H", "sheet.wgsl", "hemisphere_modified_h.wgsl"),
+];
+
+/// Surfaces that mirror the light probe (`shiny`) or do not, lit by a map in `basis` or by their vertices.
+pub(crate) fn surface(shiny: bool, basis: Option<Basis>) -> Shader {
+    let family = match basis {
+        None => 0,
+        Some(Basis::Sh4 | Basis::Sh9) => 1,
+        Some(Basis::Hl2) => 2,
+        Some(Basis::Hsh4 | Basis::Hsh9) => 3,
+        Some(Basis::Makhotkin4 | Basis::Makhotkin9) => 4,
+        Some(Basis::Zernike3 | Basis::Zernike6) => 5,
+        Some(Basis::H4 | Basis::H6) => 6,
+        Some(Basis::ModifiedH1 | Basis::ModifiedH4 | Basis::ModifiedH6) => 7,
+    };
+    SURFACES[family][usize::from(shiny)]
+}
+
 /// Every module of the renderer, for the tests that need no GPU.
 #[cfg(test)]
-pub(crate) const ALL: [Shader; 7] = [RELIGHT, DIFFUSE, SHINY, SKY, RESOLVE, BLOOM, DISPLAY];
+pub(crate) fn all() -> Vec<Shader> {
+    let others = [RELIGHT, SHEET_FILL, SKY, RESOLVE, BLOOM, DISPLAY];
+    others.into_iter().chain(SURFACES.into_iter().flatten()).collect()
+}
 
 impl Shader {
     /// Compiles the module.
@@ -59,14 +101,14 @@ mod tests {
 
     #[test]
     fn every_module_is_valid() {
-        for shader in ALL {
+        for shader in all() {
             assert_eq!(validate(shader.text), Ok(()), "{} must be valid WGSL", shader.name);
         }
     }
 
     #[test]
     fn validation_can_fail() {
-        for shader in ALL {
+        for shader in all() {
             let broken = shader.text.replace("vec2<i32>(at.clip.xy)", "vec2<i32>(at.clip.x)");
             let broken = broken.replace(": u32,", ": u32").replace("-> @location(0) vec4<f32>", "-> vec4<f32>");
             assert!(validate(&broken).is_err(), "{} with wrong types must be refused", shader.name);
@@ -80,7 +122,7 @@ mod tests {
         for entry in std::fs::read_dir(folder).expect("the shaders stand beside src") {
             let path = entry.expect("a readable entry").path();
             let text = std::fs::read_to_string(&path).expect("a readable shader");
-            let used = ALL.iter().any(|shader| shader.text.contains(&text));
+            let used = all().iter().any(|shader| shader.text.contains(&text));
             assert!(used, "{} belongs to a module", path.display());
         }
     }

@@ -2,17 +2,21 @@
 
 use crate::geometry::{Attribute, Geometry};
 use crate::material::{self, BoundMaterial, Variant};
+use crate::sheets::Sheets;
 use crate::{Error, Gpu, blend::Blended, gpu_data, shaders};
-use coeff_io::{Mesh, Prt};
+use coeff_io::Prt;
+use glam::Quat;
+use sh_math::{Rgb, hemisphere::Basis};
 use std::{collections::HashMap, ops::Range};
 
 /// The depth buffer: reversed, near / w.
 pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A run of triangles with one material.
+/// A run of triangles with one material and one light map, or none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Draw {
     pub(crate) material: u32,
+    pub(crate) sheet: Option<u32>,
     pub(crate) triangles: Range<u32>,
 }
 
@@ -21,8 +25,16 @@ pub(crate) struct Draw {
 pub(crate) struct Surfaces {
     geometry: Geometry,
     materials: Vec<BoundMaterial>,
+    layouts: Layouts,
+    format: wgpu::TextureFormat,
+    /// Materials in use, and whether under a light map.
+    kinds: Vec<(u32, bool)>,
     pipelines: HashMap<Variant, wgpu::RenderPipeline>,
     reflection: Option<wgpu::BindGroup>,
+    /// Only where a mesh shows one.
+    sheets: Option<Sheets>,
+    /// The basis that light maps are drawn in.
+    basis: Option<Basis>,
     opaque: Vec<Draw>,
     blended: Option<Blended>,
 }
@@ -37,27 +49,68 @@ pub(crate) struct Layouts {
 }
 
 impl Surfaces {
-    /// Uploads geometry, materials and textures; builds one pipeline per variant in use.
+    /// Uploads geometry, materials, textures and light maps; builds one pipeline per variant in use.
     pub(crate) fn new(
         gpu: &Gpu,
         prt: &Prt,
-        layouts: &Layouts,
+        layouts: Layouts,
         reflection: Option<wgpu::BindGroup>,
         lit: wgpu::Buffer,
         format: wgpu::TextureFormat,
     ) -> Result<Self, Error> {
         let geometry = Geometry::new(gpu, prt, lit, reflection.is_some())?;
         let materials = material::upload(gpu, prt, &layouts.material)?;
-        let draws = draws(&prt.meshes);
-        let mut pipelines = HashMap::new();
-        for draw in &draws {
-            let variant = materials[draw.material as usize].variant;
-            pipelines.entry(variant).or_insert_with(|| pipeline(gpu, layouts, &geometry, variant, format));
-        }
-        let is_blended = |draw: &Draw| materials[draw.material as usize].variant.blended;
+        let draws = draws(prt);
+        let mut kinds = draws.iter().map(|draw| (draw.material, draw.sheet.is_some())).collect::<Vec<_>>();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let is_blended = |draw: &Draw| materials[draw.material as usize].is_blended();
         let (behind, opaque) = draws.into_iter().partition::<Vec<_>, _>(is_blended);
         let blended = Blended::new(gpu, prt, &behind)?;
-        Ok(Self { geometry, materials, pipelines, reflection, opaque, blended })
+        let sheets = Sheets::new(gpu, prt)?;
+        let basis = sheets.as_ref().map(|sheets| sheets.maps().basis);
+        let pipelines = HashMap::new();
+        let mut surfaces =
+            Self { geometry, materials, layouts, format, kinds, pipelines, reflection, sheets, basis, opaque, blended };
+        surfaces.build_pipelines(gpu);
+        Ok(surfaces)
+    }
+
+    /// Builds the pipelines that are not there yet.
+    fn build_pipelines(&mut self, gpu: &Gpu) {
+        for &(material, mapped) in &self.kinds {
+            let variant = self.materials[material as usize].variant(self.basis.filter(|_| mapped));
+            if !self.pipelines.contains_key(&variant) {
+                self.pipelines.insert(variant, self.pipeline(gpu, variant));
+            }
+        }
+    }
+
+    /// The light maps without their layers, if there are any.
+    pub(crate) fn maps(&self) -> Option<&coeff_io::Maps> {
+        self.sheets.as_ref().map(Sheets::maps)
+    }
+
+    /// Forgets the light of the light maps.
+    pub(crate) fn unlight(&mut self) {
+        self.sheets.iter_mut().for_each(Sheets::unlight);
+    }
+
+    /// Records the light maps in `basis`, if there are any, under `light` turned by `rotation`; builds the pipelines for them.
+    pub(crate) fn light_maps(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        light: &Rgb,
+        rotation: Quat,
+        basis: Option<Basis>,
+    ) -> Result<(), Error> {
+        if let (Some(sheets), Some(basis)) = (&mut self.sheets, basis) {
+            sheets.record(gpu, encoder, light, rotation, basis)?;
+            self.basis = Some(basis);
+            self.build_pipelines(gpu);
+        }
+        Ok(())
     }
 
     /// Number of pipelines that were built.
@@ -82,13 +135,61 @@ impl Surfaces {
         let mut last = None;
         for draw in draws {
             let material = &self.materials[draw.material as usize];
-            if last != Some(material.variant) {
-                self.set_variant(pass, material.variant);
-                last = Some(material.variant);
+            let variant = material.variant(self.basis.filter(|_| draw.sheet.is_some()));
+            if last != Some(variant) {
+                self.set_variant(pass, variant);
+                last = Some(variant);
             }
             pass.set_bind_group(1, &material.bindings, &[]);
+            if let (Some(sheets), Some(sheet)) = (&self.sheets, draw.sheet) {
+                pass.set_bind_group(3, sheets.bindings(sheet), &[]);
+            }
             pass.draw_indexed(3 * draw.triangles.start..3 * draw.triangles.end, 0, 0..1);
         }
+    }
+
+    fn pipeline(&self, gpu: &Gpu, variant: Variant) -> wgpu::RenderPipeline {
+        let shader = shaders::surface(variant.shiny, variant.basis);
+        let (vertex_entry, fragment_entry) =
+            if variant.shiny { ("place_shiny", "draw_shiny") } else { ("place_diffuse", "draw_diffuse") };
+        let module = shader.module(&gpu.device);
+        let reflection = self.layouts.reflection.as_ref().filter(|_| variant.shiny);
+        let sheet = self.sheets.as_ref().filter(|_| variant.basis.is_some()).map(Sheets::layout);
+        let groups = [Some(&self.layouts.view), Some(&self.layouts.material), reflection, sheet];
+        let used = if sheet.is_some() { 4 } else { 2 + usize::from(variant.shiny) };
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(shader.name),
+            bind_group_layouts: &groups[..used],
+            immediate_size: 0,
+        });
+        let inputs = attributes(variant).map(|attribute| Input::new(&self.geometry, attribute)).collect::<Vec<_>>();
+        let buffers = inputs.iter().map(|input| Some(input.layout())).collect::<Vec<_>>();
+        let constants = variant.constants();
+        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(shader.name),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(vertex_entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
+            depth_stencil: Some(depth_state(!variant.blended, wgpu::CompareFunction::Greater)),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment_entry),
+                compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: self.format,
+                    blend: variant.blended.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
     }
 
     fn set_variant(&self, pass: &mut wgpu::RenderPass<'_>, variant: Variant) {
@@ -104,24 +205,25 @@ impl Surfaces {
 
 /// Whether any triangle shows a material that mirrors the light probe.
 pub(crate) fn shines(prt: &Prt) -> bool {
-    draws(&prt.meshes).iter().any(|draw| prt.materials[draw.material as usize].specular)
+    draws(prt).iter().any(|draw| prt.materials[draw.material as usize].specular)
 }
 
 /// Whether any triangle is drawn over what lies behind.
 pub(crate) fn blends(prt: &Prt) -> bool {
-    draws(&prt.meshes).iter().any(|draw| Variant::of(&prt.materials[draw.material as usize], false).blended)
+    draws(prt).iter().any(|draw| Variant::of(&prt.materials[draw.material as usize], false).blended)
 }
 
-/// The triangles of all meshes; neighbours of one material are drawn together.
-fn draws(meshes: &[Mesh]) -> Vec<Draw> {
+/// The triangles of all meshes; neighbours of one material and light map are drawn together.
+fn draws(prt: &Prt) -> Vec<Draw> {
     let mut draws: Vec<Draw> = Vec::new();
-    for mesh in meshes.iter().filter(|mesh| mesh.triangles > 0) {
-        let end = mesh.first_triangle + mesh.triangles;
+    for (index, mesh) in prt.meshes.iter().enumerate().filter(|(_, mesh)| mesh.triangles > 0) {
+        let sheet = prt.maps.as_ref().and_then(|maps| maps.sheet_of_mesh[index]);
+        let (material, triangles) = (mesh.material, mesh.first_triangle..mesh.first_triangle + mesh.triangles);
         match draws.last_mut() {
-            Some(draw) if draw.material == mesh.material && draw.triangles.end == mesh.first_triangle => {
-                draw.triangles.end = end;
+            Some(draw) if (draw.material, draw.sheet) == (material, sheet) && draw.triangles.end == triangles.start => {
+                draw.triangles.end = triangles.end;
             }
-            _ => draws.push(Draw { material: mesh.material, triangles: mesh.first_triangle..end }),
+            _ => draws.push(Draw { material, sheet, triangles }),
         }
     }
     draws
@@ -130,54 +232,6 @@ fn draws(meshes: &[Mesh]) -> Vec<Draw> {
 fn attributes(variant: Variant) -> impl Iterator<Item = Attribute> {
     let more: &[Attribute] = if variant.shiny { &Attribute::SHINY } else { &[] };
     Attribute::DIFFUSE.into_iter().chain(more.iter().copied())
-}
-
-fn pipeline(
-    gpu: &Gpu,
-    layouts: &Layouts,
-    geometry: &Geometry,
-    variant: Variant,
-    format: wgpu::TextureFormat,
-) -> wgpu::RenderPipeline {
-    let shader = if variant.shiny { shaders::SHINY } else { shaders::DIFFUSE };
-    let (vertex_entry, fragment_entry) =
-        if variant.shiny { ("place_shiny", "draw_shiny") } else { ("place_diffuse", "draw_diffuse") };
-    let module = shader.module(&gpu.device);
-    let reflection = layouts.reflection.as_ref().filter(|_| variant.shiny);
-    let groups = [Some(&layouts.view), Some(&layouts.material), reflection];
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(shader.name),
-        bind_group_layouts: if variant.shiny { &groups } else { &groups[..2] },
-        immediate_size: 0,
-    });
-    let inputs = attributes(variant).map(|attribute| Input::new(geometry, attribute)).collect::<Vec<_>>();
-    let buffers = inputs.iter().map(|input| Some(input.layout())).collect::<Vec<_>>();
-    let constants = variant.constants();
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(shader.name),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some(vertex_entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &buffers,
-        },
-        primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
-        depth_stencil: Some(depth_state(!variant.blended, wgpu::CompareFunction::Greater)),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(fragment_entry),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            targets: &[Some(wgpu::ColorTargetState {
-                format,
-                blend: variant.blended.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }
 
 /// A depth test against the reversed buffer.

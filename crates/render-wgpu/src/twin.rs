@@ -1,5 +1,7 @@
 //! Each WGSL function against its Rust twin, on a GPU: tests only.
 
+mod hemisphere;
+
 use crate::relight::Relight;
 use crate::{Driver, Error, Frame, Gpu, Tonemap, finish, geometry, gpu_data, readback, view};
 use coeff_io::{Camera, Transfer};
@@ -28,10 +30,16 @@ const FUNCTIONS: &str = concat!(
     include_str!("../shaders/tone.wgsl"),
 );
 
-/// Evaluates a WGSL expression of `x: vec4<f32>` on every input.
-fn evaluate(gpu: &Gpu, expression: &str, view: Option<&gpu_data::View>, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
+/// Evaluates a WGSL expression of `x: vec4<f32>` with the functions of `library` on every input.
+fn evaluate(
+    gpu: &Gpu,
+    library: &str,
+    expression: &str,
+    view: Option<&gpu_data::View>,
+    inputs: &[[f32; 4]],
+) -> Vec<[f32; 4]> {
     let text = format!(
-        "{FUNCTIONS}
+        "{library}
         @group(1) @binding(0) var<storage, read> inputs: array<vec4<f32>>;
         @group(1) @binding(1) var<storage, read_write> outputs: array<vec4<f32>>;
         @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
@@ -81,12 +89,13 @@ fn evaluate(gpu: &Gpu, expression: &str, view: Option<&gpu_data::View>, inputs: 
 /// Largest error of `expression` against `exact` over the inputs, relative to `1 + |exact|`.
 fn worst<const N: usize>(
     gpu: &Gpu,
+    library: &str,
     expression: &str,
     view: Option<&gpu_data::View>,
     inputs: &[[f32; 4]],
     exact: impl Fn([f32; 4]) -> [f64; N],
 ) -> f64 {
-    let results = evaluate(gpu, expression, view, inputs);
+    let results = evaluate(gpu, library, expression, view, inputs);
     let errors = inputs.iter().zip(results).flat_map(|(&input, result)| {
         let pairs = exact(input).into_iter().zip(result);
         pairs.map(|(exact, result)| (f64::from(result) - exact).abs() / (1.0 + exact.abs())).collect::<Vec<_>>()
@@ -126,7 +135,7 @@ fn equirect_position_is_its_twin() {
     // At the seam both ends of the picture are right; the fraction of a turn is compared.
     let call = "vec4<f32>(equirect_position(x.xyz, vec2<f32>(1.0)), 0.0, 0.0)";
     let inputs = directions().into_iter().filter(|d| !(d[0] == 0.0 && d[2] <= 0.0)).collect::<Vec<_>>();
-    let error = worst(&gpu, call, None, &inputs, equirect);
+    let error = worst(&gpu, FUNCTIONS, call, None, &inputs, equirect);
     assert!(error < ANGLE_TOLERANCE, "off by {error}");
 }
 
@@ -134,7 +143,7 @@ fn equirect_position_is_its_twin() {
 fn equirect_position_can_fail() {
     let Some(gpu) = gpu() else { return };
     let mirrored = "vec4<f32>(equirect_position(x.xyz * vec3<f32>(-1.0, 1.0, 1.0), vec2<f32>(1.0)), 0.0, 0.0)";
-    let error = worst(&gpu, mirrored, None, &directions(), equirect);
+    let error = worst(&gpu, FUNCTIONS, mirrored, None, &directions(), equirect);
     assert!(error > 0.1, "a mirrored picture must be noticed, but is off by {error} only");
 }
 
@@ -147,7 +156,7 @@ fn environment_brdf_is_its_twin() {
     let Some(gpu) = gpu() else { return };
     let call = "vec4<f32>(environment_brdf(x.x, x.y), 0.0, 0.0)";
     let exact = |x: [f32; 4]| render_cpu::environment_brdf(x[0], x[1]).map(f64::from);
-    let error = worst(&gpu, call, None, &roughness_and_cosine(), exact);
+    let error = worst(&gpu, FUNCTIONS, call, None, &roughness_and_cosine(), exact);
     assert!(error < TOLERANCE, "off by {error}");
 }
 
@@ -156,7 +165,7 @@ fn environment_brdf_can_fail() {
     let Some(gpu) = gpu() else { return };
     let swapped = "vec4<f32>(environment_brdf(x.y, x.x), 0.0, 0.0)";
     let exact = |x: [f32; 4]| render_cpu::environment_brdf(x[0], x[1]).map(f64::from);
-    let error = worst(&gpu, swapped, None, &roughness_and_cosine(), exact);
+    let error = worst(&gpu, FUNCTIONS, swapped, None, &roughness_and_cosine(), exact);
     assert!(error > 0.01, "swapped arguments must be noticed, but are off by {error} only");
 }
 
@@ -177,7 +186,7 @@ fn tone_curves_are_their_twins() {
     let Some(gpu) = gpu() else { return };
     for (tonemap, twin) in CURVES {
         let call = format!("vec4<f32>(tone({}u, x.x))", finish::curve(tonemap));
-        let error = worst(&gpu, &call, None, &radiances(), |x| [f64::from(render_cpu::curve(twin, x[0]))]);
+        let error = worst(&gpu, FUNCTIONS, &call, None, &radiances(), |x| [f64::from(render_cpu::curve(twin, x[0]))]);
         assert!(error < TOLERANCE, "{tonemap:?} is off by {error}");
     }
 }
@@ -187,7 +196,7 @@ fn tone_curves_can_fail() {
     let Some(gpu) = gpu() else { return };
     let call = format!("vec4<f32>(tone({}u, x.x))", finish::curve(Tonemap::Reinhard));
     let twin = render_cpu::Tonemap::Filmic;
-    let error = worst(&gpu, &call, None, &radiances(), |x| [f64::from(render_cpu::curve(twin, x[0]))]);
+    let error = worst(&gpu, FUNCTIONS, &call, None, &radiances(), |x| [f64::from(render_cpu::curve(twin, x[0]))]);
     assert!(error > 0.05, "another curve must be noticed, but is off by {error} only");
 }
 
@@ -196,9 +205,9 @@ fn srgb_is_its_twin() {
     let Some(gpu) = gpu() else { return };
     let inputs = (0..=4096).map(|i| [i as f32 / 4096.0, 0.0, 0.0, 0.0]).collect::<Vec<_>>();
     let exact = |x: [f32; 4]| [render_cpu::srgb_encode(f64::from(x[0]))];
-    let error = worst(&gpu, "vec4<f32>(srgb(x.x))", None, &inputs, exact);
+    let error = worst(&gpu, FUNCTIONS, "vec4<f32>(srgb(x.x))", None, &inputs, exact);
     assert!(error < TOLERANCE, "off by {error}");
-    let gamma = worst(&gpu, "vec4<f32>(pow(x.x, 1.0 / 2.2))", None, &inputs, exact);
+    let gamma = worst(&gpu, FUNCTIONS, "vec4<f32>(pow(x.x, 1.0 / 2.2))", None, &inputs, exact);
     assert!(gamma > 0.01, "a plain power must be noticed, but is off by {gamma} only");
 }
 
@@ -222,10 +231,10 @@ fn rotation_is_its_twin() {
     let call = "vec4<f32>(view.light_from_world * x.xyz, 0.0)";
     let turned =
         |x: [f32; 4]| frame.rotation.as_dquat().inverse() * glam::DVec3::from([x[0], x[1], x[2]].map(f64::from));
-    let error = worst(&gpu, call, Some(&view), &directions(), |x| turned(x).to_array());
+    let error = worst(&gpu, FUNCTIONS, call, Some(&view), &directions(), |x| turned(x).to_array());
     assert!(error < TOLERANCE, "off by {error}");
     let back = "vec4<f32>(x.xyz * view.light_from_world, 0.0)";
-    let error = worst(&gpu, back, Some(&view), &directions(), |x| turned(x).to_array());
+    let error = worst(&gpu, FUNCTIONS, back, Some(&view), &directions(), |x| turned(x).to_array());
     assert!(error > 0.1, "the reverse rotation must be noticed, but is off by {error} only");
 }
 
@@ -240,9 +249,9 @@ fn clip_coordinates_are_those_of_the_camera() {
         let clip = matrix * Vec3::new(x[0], x[1], x[2]).extend(1.0);
         [clip.x, clip.y, view.near, clip.w].map(f64::from)
     };
-    let error = worst(&gpu, "clip_from_offset(x.xyz - view.eye)", Some(&view), &directions(), exact);
+    let error = worst(&gpu, FUNCTIONS, "clip_from_offset(x.xyz - view.eye)", Some(&view), &directions(), exact);
     assert!(error < TOLERANCE, "off by {error}");
-    let error = worst(&gpu, "clip_from_offset(x.xyz)", Some(&view), &directions(), exact);
+    let error = worst(&gpu, FUNCTIONS, "clip_from_offset(x.xyz)", Some(&view), &directions(), exact);
     assert!(error > 0.1, "an eye at the origin must be noticed, but is off by {error} only");
 }
 

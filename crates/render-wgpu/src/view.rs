@@ -19,6 +19,7 @@ pub(crate) fn view(frame: &Frame, near: f32, largest: f32) -> gpu_data::View {
         forward: (-back).as_vec3().into(),
         largest,
         right: (tangent * aspect * right).as_vec3().into(),
+        white: f32::from(u8::from(!frame.albedo)),
         up: (tangent * up).as_vec3().into(),
         clip_x: (right / (tangent * aspect)).as_vec3().into(),
         clip_y: (up / tangent).as_vec3().into(),

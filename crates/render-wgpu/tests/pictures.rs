@@ -72,6 +72,9 @@ fn cpu_frame(frame: &Frame) -> render_cpu::Frame {
         bloom: frame.bloom,
         supersample: frame.supersample,
         sky: frame.sky,
+        albedo: frame.albedo,
+        basis: frame.basis,
+        functions: frame.functions,
     }
 }
 
