@@ -162,10 +162,9 @@ impl<'a> Arrivals<'a> {
             let blockers = self.gatherer.blockers(receiver, index, step, direct.openness, worker);
             arrival.inside_share = blockers.inside_share;
             arrival.bounce_rays = blockers.rays;
-            if self.gatherer.hits {
-                for (direction, hit, weight) in &blockers.found {
-                    self.add_sent(*direction, hit, *weight, &mut arrival.values);
-                }
+            if self.gatherer.hits && !blockers.found.is_empty() {
+                let hidden = self.hidden(receiver, &direct.transfer);
+                self.add_all_sent(&blockers.found, &hidden, &mut arrival.values);
             }
             arrival.seen = blockers.found.iter().map(|(direction, hit, _)| (*direction, hit.t)).collect();
         }
@@ -197,8 +196,37 @@ impl<'a> Arrivals<'a> {
         }
     }
 
-    /// Adds what a surface sends along one direction, by its share of the domain.
-    fn add_sent(&self, direction: Vec3, hit: &Hit, weight: f32, values: &mut [f32]) {
+    /// Mean of every function over the directions that are not open, times their share.
+    fn hidden(&self, receiver: &Receiver, visibility: &[f32]) -> Vec<f32> {
+        let all = self.gatherer.bank.domain.open_about(self.functions, receiver.normal);
+        all.iter().zip(visibility).map(|(all, open)| all - open).collect()
+    }
+
+    /// Adds what surfaces send. Their mean is spread over what is hidden as a whole, and only what differs from it over the directions
+    /// that were looked along: so where all send alike, or as much as the sky, no ray is missed, however few there are.
+    fn add_all_sent(&self, found: &[(Vec3, Hit, f32)], hidden: &[f32], values: &mut [f32]) {
+        let row = self.shape.depth * self.shape.channels;
+        let mut sums = vec![0.0f32; self.shape.len()];
+        let mut means = vec![0.0f32; self.shape.functions];
+        for (direction, hit, weight) in found {
+            let mut harmonics = [0.0; 25];
+            let harmonics = &mut harmonics[..self.shape.functions];
+            sh_math::evaluate(self.functions, *direction, harmonics);
+            means.iter_mut().zip(&*harmonics).for_each(|(sum, harmonic)| *sum += weight * harmonic);
+            self.add_sent(harmonics, hit, *weight, &mut sums);
+        }
+        // The first function is constant: the ratio of sums is the mean radiance.
+        let mean: Vec<f32> = sums[..row].iter().map(|sum| sum / means[0]).collect();
+        for (k, (out, sums)) in values.chunks_exact_mut(row).zip(sums.chunks_exact(row)).enumerate() {
+            let missed = hidden[k] - means[k];
+            for ((out, sum), mean) in out.iter_mut().zip(sums).zip(&mean) {
+                *out += sum + missed * mean;
+            }
+        }
+    }
+
+    /// Adds what a surface sends along a direction of these harmonics, by its share of the domain.
+    fn add_sent(&self, harmonics: &[f32], hit: &Hit, weight: f32, values: &mut [f32]) {
         let world = self.gatherer.world;
         let albedo = world.albedo(hit.triangle, hit.u, hit.v).to_array();
         if albedo == [0.0; 3] {
@@ -206,9 +234,6 @@ impl<'a> Arrivals<'a> {
         }
         let corners = world.corners[hit.triangle as usize].map(|c| resolve(c, !hit.front, self.receivers));
         let shares = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let mut harmonics = [0.0; 25];
-        let harmonics = &mut harmonics[..self.shape.functions];
-        sh_math::evaluate(self.functions, direction, harmonics);
         let Shape { depth, channels, .. } = self.shape;
         let mut sent = vec![0.0f32; depth * channels];
         for (corner, share) in corners.into_iter().zip(shares) {
