@@ -65,7 +65,11 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
 pub fn bake_with(scene: &Scene, settings: &Settings, extras: &Extras, progress: ProgressFn<'_>) -> Result<Prt, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, progress)?;
-    let Prepared { world, receivers, plan, traced } = prepare(scene, settings, extras)?;
+    let prepared = prepare(scene, settings, extras)?;
+    if let Some(volume) = &extras.volume {
+        crate::volume::check(volume, scene, &prepared, settings, extras.light.is_some())?;
+    }
+    let Prepared { world, receivers, plan, traced } = prepared;
     let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
     // Where nothing is traced no directions are needed: the smallest set stands in.
     let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };

@@ -6,9 +6,10 @@ use crate::domain::{Domain, Judge};
 use crate::field::Field;
 use crate::gather::Gatherer;
 use crate::passes::Monitor;
+use crate::plan::allowed;
 use crate::receivers::Receivers;
 use crate::{Error, MapSettings, VolumeSettings};
-use coeff_io::{MapLight, Plan, Prt, Settings};
+use coeff_io::{Bounces, Effect, MapLight, Plan, Prt, Settings};
 use scene::Scene;
 use sh_math::Bands;
 
@@ -76,6 +77,9 @@ impl Done<'_> {
     /// What arrives at points, along the directions of a bank of [`Done::bank`].
     pub(crate) fn arrivals<'b>(&'b self, bank: &'b DirectionBank, functions: Bands) -> Arrivals<'b> {
         let light = self.light.map(|light| &light.coefficients[..self.light_bands().coefficients()]);
+        // Surfaces that see nothing of each other are seen from points in space.
+        let in_space = matches!(bank.domain, Domain::Sphere(_));
+        let bounces = allowed(self.settings, Effect::Interreflection) && self.settings.bounces != Bounces::Fixed(0);
         let setting = Setting {
             world: self.gatherer.world,
             receivers: self.receivers,
@@ -84,8 +88,8 @@ impl Done<'_> {
                 None => Sent::Transfer(self.transfer),
             },
             quality: self.settings.quality,
-            visibility: self.gatherer.visibility,
-            hits: self.gatherer.hits,
+            visibility: self.gatherer.visibility || in_space && allowed(self.settings, Effect::Visibility),
+            hits: self.gatherer.hits || in_space && bounces,
             light,
             light_bands: self.light_bands(),
             functions,

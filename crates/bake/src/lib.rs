@@ -44,7 +44,7 @@ mod world;
 
 pub use crate::bake::{ProgressFn, bake, bake_with, plan, plan_with};
 pub use crate::maps::{MapSettings, SheetSettings};
-pub use crate::volume::VolumeSettings;
+pub use crate::volume::{VolumePlace, VolumeSettings, VolumeSteps};
 pub use error::Error;
 pub use extras::{Extras, FixedLight};
 pub use price::{Price, price};

@@ -84,6 +84,9 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         bloom: options.bloom,
         supersample: options.supersample,
         sky: options.background == Background::Sky,
+        albedo: true,
+        basis: None,
+        functions: None,
     };
     frame.check().map_err(|error| crate::usage::Usage(error.to_string()))?;
     let environment = options.probe.load(console)?;
