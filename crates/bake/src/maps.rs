@@ -15,7 +15,7 @@ use crate::gather::Worker;
 use crate::progress::Stage;
 use crate::receivers::{Receiver, morton_order};
 use crate::repair::is_inside;
-use coeff_io::{Layers, Maps, Prt, Sheet};
+use coeff_io::{Coding, Encoding, Layers, MapLight, Maps, Prt, Sheet, curves};
 use frame::{Converter, TangentFrame};
 use glam::Vec2;
 use plate::{NONE, Plate};
@@ -45,6 +45,8 @@ pub struct MapSettings {
     pub stitch: bool,
     /// Rings of texels that are filled around each chart, for filters and mip-maps.
     pub dilation: u32,
+    /// How the file holds the numbers.
+    pub encoding: Encoding,
 }
 
 /// What sheet is wanted.
@@ -97,13 +99,15 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     for (index, sheet) in (0..).zip(&settings.sheets) {
         sheet.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(index));
     }
+    let light = done.map_light();
     let finish = |(mut gathered, sheet): (Gathered, &SheetSettings)| {
         (1..settings.dilation).for_each(|_| gathered.plate.dilate());
         let held = if sheet.directional { settings.basis } else { settings.basis.cut(1).unwrap_or(settings.basis) };
-        Sheet { layers: layers(&gathered, &Converter::new(held, functions), held, shape) }
+        let values = layers(&gathered.plate, &gathered.frames, &Converter::new(held, functions), shape);
+        Sheet { layers: encoded(&gathered.plate, &values, shape, held, &light, settings.encoding) }
     };
     let sheets = sheets.into_iter().zip(&settings.sheets).map(finish).collect();
-    Ok(Maps { basis: settings.basis, light: done.map_light(), sheets, sheet_of_mesh })
+    Ok(Maps { basis: settings.basis, light, sheets, sheet_of_mesh })
 }
 
 fn check(done: &Done<'_>, settings: &MapSettings) -> Result<(), Error> {
@@ -297,15 +301,14 @@ fn bilinear(plate: &Plate, uv: Vec2) -> Agreement {
     out
 }
 
-/// The layers of the file: `[function][coefficient of the light]` pictures.
-fn layers(gathered: &Gathered, converter: &Converter, basis: Basis, shape: Shape) -> Layers {
-    let plate = &gathered.plate;
-    let frame = |slot: usize| &gathered.frames[plate.model_of[slot] as usize];
+/// The numbers of the file: `[function][coefficient of the light]` pictures.
+fn layers(plate: &Plate, frames: &[TangentFrame], converter: &Converter, shape: Shape) -> Vec<f32> {
+    let frame = |slot: usize| &frames[plate.model_of[slot] as usize];
     let rows: Vec<Vec<f32>> = (0..plate.slots())
         .into_par_iter()
         .map(|slot| converter.convert(frame(slot), shape, &plate.values[slot * plate.row_len..][..plate.row_len]))
         .collect();
-    let (texels, count) = (plate.width * plate.height, basis.count() * shape.depth);
+    let (texels, count) = (plate.width * plate.height, converter.count() * shape.depth);
     let mut values = vec![0.0; count * texels * shape.channels];
     for (row, &texel) in rows.iter().zip(&plate.texel_of) {
         for (layer, numbers) in row.chunks_exact(shape.channels).enumerate() {
@@ -313,5 +316,14 @@ fn layers(gathered: &Gathered, converter: &Converter, basis: Basis, shape: Shape
             values[start..start + shape.channels].copy_from_slice(numbers);
         }
     }
-    Layers::exact([plate.width as u32, plate.height as u32, count as u32, shape.channels as u32], &values)
+    values
+}
+
+/// The numbers as the file holds them, with a range of its own for each chart where that is asked for.
+fn encoded(plate: &Plate, values: &[f32], shape: Shape, basis: Basis, light: &MapLight, encoding: Encoding) -> Layers {
+    let count = basis.count() * shape.depth;
+    let curves = curves(basis, light);
+    let coding = Coding { charts: &plate.owner, curves: &curves, ..Coding::plain(encoding) };
+    let shape = [plate.width as u32, plate.height as u32, count as u32, shape.channels as u32];
+    Layers::encode(shape, values, &coding).layers
 }

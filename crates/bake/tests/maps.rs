@@ -21,7 +21,7 @@ fn unwrapped(mut scene: Scene, side: u32) -> (Scene, SheetSettings) {
 }
 
 fn settings(basis: Basis, sheet: &SheetSettings) -> MapSettings {
-    MapSettings { basis, sheets: vec![sheet.clone()], stitch: true, dilation: 2 }
+    MapSettings { basis, sheets: vec![sheet.clone()], stitch: true, dilation: 2, encoding: coeff_io::Encoding::F32 }
 }
 
 fn baked(scene: &Scene, settings: &Settings, maps: MapSettings, light: Option<FixedLight>) -> Prt {

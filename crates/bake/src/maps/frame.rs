@@ -85,6 +85,11 @@ impl Converter {
         Self { functions, basis, rows }
     }
 
+    /// Functions of the basis.
+    pub(crate) fn count(&self) -> usize {
+        self.basis.count()
+    }
+
     /// The coefficients in a frame, `[function of the basis][depth][channel]`, of irradiance over world normals.
     pub(crate) fn convert(&self, frame: &TangentFrame, shape: Shape, world: &[f32]) -> Vec<f32> {
         let columns = shape.depth * shape.channels;
