@@ -132,7 +132,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 /// Parses a number of bytes of which there is one at least.
-fn some_bytes(text: &str) -> Result<u64, String> {
+pub(crate) fn some_bytes(text: &str) -> Result<u64, String> {
     match settings::bytes(text)? {
         0 => Err("no bake fits into 0 bytes: give a size such as 8M".into()),
         bytes => Ok(bytes),

@@ -1,0 +1,69 @@
+//! Which basis to take, and in which encoding.
+
+use super::{Row, Stored};
+use sh_math::hemisphere::Basis;
+
+/// Share by which times of the same work may differ.
+const CLOCK: f64 = 0.1;
+/// Share by which errors may differ that count as the same.
+const SAME_ERROR: f64 = 0.01;
+
+/// What the user wants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Goal {
+    /// A relative error as drawn, root of the mean square.
+    Error(f64),
+    /// Bytes of all sheets.
+    Bytes(u64),
+}
+
+/// What serves a goal best.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// The goal.
+    pub goal: Goal,
+    /// Index of the row.
+    pub row: usize,
+    /// Index of the encoding in [`Row::stored`].
+    pub stored: usize,
+    /// Whether it meets the goal; else it is what comes nearest.
+    pub met: bool,
+}
+
+/// For an error: the fewest bytes that keep it, of equal bytes the fastest. For bytes: the least error that fits. Where nothing meets the
+/// goal, the least error or the fewest bytes there are.
+///
+/// An ordinary light map is chosen where no normal map is in use, and only there. Times within a tenth of each other are the same, errors
+/// within a hundredth; what is still equal is decided for the last of [`Basis::ALL`], the modified H-basis, which can be cut to a light map.
+///
+/// # Panics
+/// When there is no row to choose.
+pub(super) fn choose(rows: &[Row], has_normal_maps: bool, goal: Goal) -> Choice {
+    let allowed = |row: &Row| (row.basis == Basis::ModifiedH1) != has_normal_maps;
+    let pairs = |(r, row): (usize, &Row)| (0..row.stored.len()).map(move |s| (r, s)).collect::<Vec<_>>();
+    let all: Vec<(usize, usize)> = rows.iter().enumerate().filter(|(_, row)| allowed(row)).flat_map(pairs).collect();
+    let of = |(row, stored): (usize, usize)| (&rows[row], &rows[row].stored[stored]);
+    let bytes = |pair| of(pair).1.bytes as f64;
+    let error = |pair| of(pair).1.drawn.rms;
+    let time = |pair| of(pair).0.nanoseconds;
+    let meets = |stored: &Stored| match goal {
+        Goal::Error(most) => stored.drawn.rms <= most,
+        Goal::Bytes(most) => stored.bytes <= most,
+    };
+    let meeting: Vec<(usize, usize)> = all.iter().copied().filter(|&pair| meets(of(pair).1)).collect();
+    let met = !meeting.is_empty();
+    let left = match (goal, met) {
+        (Goal::Error(_), true) => least(least(least(meeting, bytes, 0.0), time, CLOCK), error, SAME_ERROR),
+        (Goal::Bytes(_), true) => least(least(least(meeting, error, SAME_ERROR), bytes, 0.0), time, CLOCK),
+        (Goal::Error(_), false) => least(least(least(all, error, SAME_ERROR), bytes, 0.0), time, CLOCK),
+        (Goal::Bytes(_), false) => least(least(least(all, bytes, 0.0), error, SAME_ERROR), time, CLOCK),
+    };
+    let &(row, stored) = left.last().expect("every comparison has all bases");
+    Choice { goal, row, stored, met }
+}
+
+/// Those whose key is the least, or larger by no more than the share `slack`.
+fn least<T: Copy>(list: Vec<T>, key: impl Fn(T) -> f64, slack: f64) -> Vec<T> {
+    let best = list.iter().map(|&item| key(item)).fold(f64::INFINITY, f64::min);
+    list.into_iter().filter(|&item| key(item) <= best * (1.0 + slack)).collect()
+}

@@ -1,0 +1,149 @@
+//! The comparison as text: a table for people, comma-separated values for programs.
+
+use super::{Choice, Comparison, Goal, Row, Stored};
+use crate::plot::chart::Unit;
+use sh_math::hemisphere::Basis;
+use std::fmt::Write;
+
+/// The names of the columns of the comma-separated values.
+const HEAD: &str = "basis,functions,imse,relative_rms,worst_relative,worst_sheet,worst_row,worst_column,worst_x,worst_y,worst_z,worst_mesh,\
+    ns_per_evaluation,encoding,bytes,drawn_relative_rms,drawn_relative_p99,chosen\n";
+
+impl Comparison {
+    /// One line per basis and encoding, with a head line. Errors are of irradiance / pi.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let lines = |(r, row): (usize, &Row)| -> String {
+            let line =
+                |(s, stored): (usize, &Stored)| values(row, stored, (r, s) == (self.choice.row, self.choice.stored));
+            row.stored.iter().enumerate().map(line).collect()
+        };
+        HEAD.to_owned() + &self.rows.iter().enumerate().map(lines).collect::<String>()
+    }
+
+    /// The same for people, without the recommendation.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "{:<13} {:>9} {:>7} {:>7} {:>7}  {:>7} {:>7}  {:>8} {:>7}  {:>8} {:>7}  {:>8} {:>7} {:>6}\n",
+            "basis",
+            "IMSE",
+            "rms",
+            "worst",
+            "drawn",
+            "99 %",
+            "f32",
+            "f16",
+            "drawn",
+            "u8",
+            "drawn",
+            "bc6h",
+            "drawn",
+            "ns"
+        );
+        for row in &self.rows {
+            text += &line(row);
+        }
+        text + &self.notes()
+    }
+
+    /// What to take, in a sentence.
+    #[must_use]
+    pub fn recommendation(&self) -> String {
+        let Choice { goal, row, stored, met } = self.choice;
+        let (row, stored) = (&self.rows[row], &self.rows[row].stored[stored]);
+        let (rms, bytes) = (Unit::Share.write(stored.drawn.rms), Unit::Bytes.write(stored.bytes as f64));
+        let taken = format!("{} in {}, error {rms} as drawn, {bytes}", row.basis.name(), stored.encoding.id());
+        let only = if self.has_normal_maps { "" } else { " (no normal map is in use: a light map serves)" };
+        match (goal, met) {
+            (Goal::Error(most), true) => format!("for an error of {}: {taken}{only}", Unit::Share.write(most)),
+            (Goal::Error(most), false) => {
+                format!("for an error of {}: nothing keeps it; the least is {taken}{only}", Unit::Share.write(most))
+            }
+            (Goal::Bytes(most), true) => format!("for {}: {taken}{only}", Unit::Bytes.write(most as f64)),
+            (Goal::Bytes(most), false) => {
+                format!("for {}: nothing fits; the smallest is {taken}{only}", Unit::Bytes.write(most as f64))
+            }
+        }
+    }
+
+    /// The options of `relume bake` that make what is recommended.
+    #[must_use]
+    pub fn options(&self) -> String {
+        let (row, stored) = (&self.rows[self.choice.row], &self.rows[self.choice.row].stored[self.choice.stored]);
+        format!("--storage texture --light fixed --basis {} --encoding {}", typed(row.basis), stored.encoding.id())
+    }
+
+    fn notes(&self) -> String {
+        let Worst { largest, place } = self.worst();
+        let drawn = if self.has_normal_maps {
+            format!("at {} normals that the normal maps hold", super::PICKED)
+        } else {
+            "at the surface's own normal, since no normal map is in use".to_owned()
+        };
+        format!(
+            "\n{} texels that see something, mean irradiance / pi {:.4} over the hemisphere, {:.4} as drawn.\nIMSE, rms, worst: irradiance / pi \
+             over the hemisphere; rms and worst (of one texel) against the mean. drawn, 99 %: {drawn},\nagainst the mean there. f16, u8, \
+             bc6h: bytes of {} texels, errors with what the encoding loses. ns: one evaluation,\nthree channels, f32, one thread. The worst \
+             texel of {largest} {place}.\n",
+            self.texels, self.mean, self.drawn_mean, self.sheet_texels
+        )
+    }
+
+    /// The worst texel of the basis chosen, in words.
+    fn worst(&self) -> Worst {
+        let row = &self.rows[self.choice.row];
+        let super::Worst { sheet, place: [y, x], position: [a, b, c], mesh, .. } = &row.worst;
+        let place = format!("is row {y}, column {x} of sheet {sheet}: ({a:.3}, {b:.3}, {c:.3}) on '{mesh}'");
+        Worst { largest: row.basis.name(), place }
+    }
+}
+
+/// Words about a worst texel.
+struct Worst {
+    largest: &'static str,
+    place: String,
+}
+
+/// The name of a basis as `--basis` takes it.
+pub(super) fn typed(basis: Basis) -> String {
+    basis.name().to_lowercase().replace(' ', "-")
+}
+
+fn line(row: &Row) -> String {
+    let share = |value: f64| Unit::Share.write(value);
+    let exact = row.stored[0].drawn;
+    let mut text = format!(
+        "{:<13} {:>9.3e} {:>7} {:>7} {:>7}  {:>7} {:>7}",
+        row.basis.name(),
+        row.imse,
+        share(row.relative),
+        share(row.worst.relative),
+        share(exact.rms),
+        share(exact.p99),
+        Unit::Bytes.write(row.stored[0].bytes as f64)
+    );
+    for stored in &row.stored[1..] {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "  {:>8} {:>7}", Unit::Bytes.write(stored.bytes as f64), share(stored.drawn.rms));
+    }
+    text + &format!(" {:>6.2}\n", row.nanoseconds)
+}
+
+fn values(row: &Row, stored: &Stored, is_chosen: bool) -> String {
+    let super::Worst { sheet, place: [y, x], position: [a, b, c], mesh, relative } = &row.worst;
+    let mesh =
+        if mesh.contains([',', '"', '\n', '\r']) { format!("\"{}\"", mesh.replace('"', "\"\"")) } else { mesh.clone() };
+    format!(
+        "{},{},{:.9e},{:.9},{relative:.9},{sheet},{y},{x},{a},{b},{c},{mesh},{:.3},{},{},{:.9},{:.9},{is_chosen}\n",
+        row.basis.name(),
+        row.basis.count(),
+        row.imse,
+        row.relative,
+        row.nanoseconds,
+        stored.encoding.id(),
+        stored.bytes,
+        stored.drawn.rms,
+        stored.drawn.p99
+    )
+}
