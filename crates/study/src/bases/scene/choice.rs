@@ -67,3 +67,57 @@ fn least<T: Copy>(list: Vec<T>, key: impl Fn(T) -> f64, slack: f64) -> Vec<T> {
     let best = list.iter().map(|&item| key(item)).fold(f64::INFINITY, f64::min);
     list.into_iter().filter(|&item| key(item) <= best * (1.0 + slack)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Drawn, Worst};
+    use super::*;
+    use coeff_io::Encoding;
+
+    fn row(basis: Basis, nanoseconds: f64, stored: [(u64, f64); 2]) -> Row {
+        let worst = Worst { sheet: 0, place: [0; 2], position: [0.0; 3], mesh: String::new(), relative: 0.0 };
+        let stored =
+            stored.map(|(bytes, rms)| Stored { encoding: Encoding::F16, bytes, drawn: Drawn { rms, p99: rms } });
+        Row { basis, imse: 0.0, relative: 0.0, worst, stored: stored.to_vec(), nanoseconds }
+    }
+
+    /// HL2 is small, H and modified H of four functions are alike, SH 9 is the closest and the largest.
+    fn rows() -> Vec<Row> {
+        vec![
+            row(Basis::Sh9, 8.0, [(540, 0.001), (270, 0.004)]),
+            row(Basis::Hl2, 3.0, [(180, 0.05), (90, 0.051)]),
+            row(Basis::H4, 4.0, [(240, 0.02), (120, 0.03)]),
+            row(Basis::ModifiedH1, 1.0, [(60, 0.001), (30, 0.001)]),
+            row(Basis::ModifiedH4, 4.2, [(240, 0.02), (120, 0.03)]),
+        ]
+    }
+
+    fn chosen(goal: Goal) -> (Basis, usize, bool) {
+        let Choice { row, stored, met, .. } = choose(&rows(), true, goal);
+        (rows()[row].basis, stored, met)
+    }
+
+    #[test]
+    fn each_goal_finds_its_basis() {
+        assert_eq!(chosen(Goal::Error(0.06)), (Basis::Hl2, 1, true));
+        assert_eq!(chosen(Goal::Error(0.03)), (Basis::ModifiedH4, 1, true), "as small and as close: the last");
+        assert_eq!(chosen(Goal::Error(0.02)), (Basis::ModifiedH4, 0, true));
+        assert_eq!(chosen(Goal::Error(0.004)), (Basis::Sh9, 1, true));
+        assert_eq!(chosen(Goal::Error(0.0001)), (Basis::Sh9, 0, false), "the least error there is");
+        assert_eq!(chosen(Goal::Bytes(269)), (Basis::ModifiedH4, 0, true));
+        assert_eq!(chosen(Goal::Bytes(100)), (Basis::Hl2, 1, true));
+        assert_eq!(chosen(Goal::Bytes(10)), (Basis::Hl2, 1, false), "the fewest bytes there are");
+        let plain = choose(&rows(), false, Goal::Error(0.5));
+        assert_eq!((plain.row, plain.stored), (3, 1), "a light map where no normal map is, and there alone");
+    }
+
+    /// Of equal bytes the faster is taken where the clock can tell, whatever stands last.
+    #[test]
+    fn each_goal_finds_its_basis_can_fail() {
+        let mut rows = rows();
+        rows[4].nanoseconds = 5.0;
+        assert_eq!(choose(&rows, true, Goal::Error(0.03)).row, 2);
+        rows[4].stored[1].bytes = 119;
+        assert_eq!(choose(&rows, true, Goal::Error(0.03)).row, 4, "fewer bytes go before");
+    }
+}

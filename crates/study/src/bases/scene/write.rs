@@ -1,6 +1,6 @@
 //! The comparison as text: a table for people, comma-separated values for programs.
 
-use super::{Choice, Comparison, Goal, Row, Stored};
+use super::{Choice, Comparison, Goal, Row, Stored, Worst};
 use crate::plot::chart::Unit;
 use sh_math::hemisphere::Basis;
 use std::fmt::Write;
@@ -25,7 +25,7 @@ impl Comparison {
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!(
-            "{:<13} {:>9} {:>7} {:>7} {:>7}  {:>7} {:>7}  {:>8} {:>7}  {:>8} {:>7}  {:>8} {:>7} {:>6}\n",
+            "{:<13} {:>9} {:>7} {:>7} {:>9} {:>9} {:>9}  {:>8} {:>9}  {:>8} {:>7}  {:>8} {:>7} {:>6}\n",
             "basis",
             "IMSE",
             "rms",
@@ -67,7 +67,7 @@ impl Comparison {
         }
     }
 
-    /// The options of `relume bake` that make what is recommended.
+    /// The options of `relume bake` that make what is recommended, beside those of the sheets and of the light.
     #[must_use]
     pub fn options(&self) -> String {
         let (row, stored) = (&self.rows[self.choice.row], &self.rows[self.choice.row].stored[self.choice.stored]);
@@ -75,46 +75,48 @@ impl Comparison {
     }
 
     fn notes(&self) -> String {
-        let Worst { largest, place } = self.worst();
+        let (largest, place) = self.worst();
         let drawn = if self.has_normal_maps {
             format!("at {} normals that the normal maps hold", super::PICKED)
         } else {
             "at the surface's own normal, since no normal map is in use".to_owned()
         };
         format!(
-            "\n{} texels that see something, mean irradiance / pi {:.4} over the hemisphere, {:.4} as drawn.\nIMSE, rms, worst: irradiance / pi \
-             over the hemisphere; rms and worst (of one texel) against the mean. drawn, 99 %: {drawn},\nagainst the mean there. f16, u8, \
-             bc6h: bytes of {} texels, errors with what the encoding loses. ns: one evaluation,\nthree channels, f32, one thread. The worst \
-             texel of {largest} {place}.\n",
+            "\n{} texels that see something, mean irradiance / pi {:.4} over the hemisphere, {:.4} as drawn.\nIMSE, rms, worst: irradiance / \
+             pi over the hemisphere; rms and worst (of one texel) against the mean.\ndrawn, 99 %: {drawn}, against the mean there.\nf32, \
+             f16, u8, bc6h: bytes of {} texels, errors with what the encoding loses.\nns: one evaluation, three channels, f32, one \
+             thread.\nThe worst texel of {largest} {place}.\n",
             self.texels, self.mean, self.drawn_mean, self.sheet_texels
         )
     }
 
     /// The worst texel of the basis chosen, in words.
-    fn worst(&self) -> Worst {
+    fn worst(&self) -> (&'static str, String) {
         let row = &self.rows[self.choice.row];
-        let super::Worst { sheet, place: [y, x], position: [a, b, c], mesh, .. } = &row.worst;
+        let Worst { sheet, place: [y, x], position: [a, b, c], mesh, .. } = &row.worst;
         let place = format!("is row {y}, column {x} of sheet {sheet}: ({a:.3}, {b:.3}, {c:.3}) on '{mesh}'");
-        Worst { largest: row.basis.name(), place }
+        (row.basis.name(), place)
     }
 }
 
-/// Words about a worst texel.
-struct Worst {
-    largest: &'static str,
-    place: String,
+/// The name of a basis as `--basis` takes it.
+fn typed(basis: Basis) -> String {
+    match basis {
+        // Its name ends in the number of its functions, which nobody types.
+        Basis::Hl2 => "hl2".into(),
+        _ => basis.name().to_lowercase().replace("modified ", "modified-").replace(' ', ""),
+    }
 }
 
-/// The name of a basis as `--basis` takes it.
-pub(super) fn typed(basis: Basis) -> String {
-    basis.name().to_lowercase().replace(' ', "-")
+/// A share for a column: what is rounding is not told digit by digit.
+fn share(value: f64) -> String {
+    if value > 0.0 && value < 1e-5 { "< 0.001 %".into() } else { Unit::Share.write(value) }
 }
 
 fn line(row: &Row) -> String {
-    let share = |value: f64| Unit::Share.write(value);
     let exact = row.stored[0].drawn;
     let mut text = format!(
-        "{:<13} {:>9.3e} {:>7} {:>7} {:>7}  {:>7} {:>7}",
+        "{:<13} {:>9.3e} {:>7} {:>7} {:>9} {:>9} {:>9}",
         row.basis.name(),
         row.imse,
         share(row.relative),
@@ -123,15 +125,16 @@ fn line(row: &Row) -> String {
         share(exact.p99),
         Unit::Bytes.write(row.stored[0].bytes as f64)
     );
-    for stored in &row.stored[1..] {
+    for (stored, width) in row.stored[1..].iter().zip([9, 7, 7]) {
+        let (bytes, rms) = (Unit::Bytes.write(stored.bytes as f64), share(stored.drawn.rms));
         // Writing to a string cannot fail.
-        let _ = write!(text, "  {:>8} {:>7}", Unit::Bytes.write(stored.bytes as f64), share(stored.drawn.rms));
+        let _ = write!(text, "  {bytes:>8} {rms:>width$}");
     }
     text + &format!(" {:>6.2}\n", row.nanoseconds)
 }
 
 fn values(row: &Row, stored: &Stored, is_chosen: bool) -> String {
-    let super::Worst { sheet, place: [y, x], position: [a, b, c], mesh, relative } = &row.worst;
+    let Worst { sheet, place: [y, x], position: [a, b, c], mesh, relative } = &row.worst;
     let mesh =
         if mesh.contains([',', '"', '\n', '\r']) { format!("\"{}\"", mesh.replace('"', "\"\"")) } else { mesh.clone() };
     format!(
@@ -146,4 +149,17 @@ fn values(row: &Row, stored: &Stored, is_chosen: bool) -> String {
         stored.drawn.rms,
         stored.drawn.p99
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_can_be_typed() {
+        for basis in Basis::ALL {
+            assert_eq!(Basis::named(&typed(basis)), Some(basis), "{}", typed(basis));
+        }
+        assert_eq!([typed(Basis::ModifiedH6), typed(Basis::Hl2)], ["modified-h6", "hl2"]);
+    }
 }
