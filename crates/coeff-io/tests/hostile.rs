@@ -142,7 +142,7 @@ fn signed_changes_never_panic() {
             refused += usize::from(result.is_err());
             let Ok(prt) = result else { continue };
             if let Some(volume) = prt.volume {
-                volume.irradiance(glam::Vec3::new(-0.7, 1.2, 2.1), glam::Vec3::Y, &[[1.0; 3]; 64]);
+                _ = volume.irradiance(glam::Vec3::new(-0.7, 1.2, 2.1), glam::Vec3::Y, &[[1.0; 3]; 64]);
             }
             for sheet in prt.maps.into_iter().flat_map(|maps| maps.sheets) {
                 assert!(sheet.layers.decode().iter().all(|v| v.is_finite()), "byte {at} = {value:#x}");
