@@ -123,6 +123,14 @@ fn blocks<F: Format>(layers: &Layers) -> Option<Blocks<'_>> {
     Some(Blocks { bytes: layers.bytes.get(first..)?, layers: ranges })
 }
 
+/// What stands before the blocks of layers of so many channels: the inverse of [`Layers::blocks`].
+pub(crate) fn head(encoding: Encoding, channels: usize, layers: &[(Curve, [[f32; 2]; 3])]) -> Vec<u8> {
+    let own = if encoding == Encoding::Bc1 { Bc1::ranges(channels) } else { Bc6h::ranges(channels) };
+    let mut bytes: Vec<u8> = layers.iter().map(|(curve, _)| curve.to_byte()).collect();
+    bytes.extend(layers.iter().flat_map(|(_, ranges)| ranges.iter().take(own).flatten()).flat_map(|v| v.to_le_bytes()));
+    bytes
+}
+
 /// As [`Layers::fault`], of bytes whose length is right. Every block decodes to shares in finite numbers.
 pub(crate) fn fault<F: Format>(layers: &Layers) -> Option<(usize, String)> {
     let [ranges, first, _] = places::<F>(layers)?;

@@ -3,6 +3,7 @@
 use crate::block::{Bc1, Bc6h};
 use crate::{Encoding, Layers, MapLight, block, eight_bits};
 use half::f16;
+use serde::{Deserialize, Serialize};
 use sh_math::hemisphere::Basis;
 
 /// What [`Layers::encode`] is asked for.
@@ -31,7 +32,8 @@ impl Coding<'static> {
 }
 
 /// How codes of a layer follow its numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Curve {
     /// In even steps.
     Linear,

@@ -26,6 +26,7 @@ pub struct Layers {
 
 /// How numbers of a layer are held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Encoding {
     /// Little-endian f32.
     F32,

@@ -23,6 +23,7 @@ pub struct Maps {
 
 /// What the coefficients of maps and volumes hold.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum MapLight {
     /// Light of one probe, as it lay: RGB per function.
     Fixed {
