@@ -294,6 +294,21 @@ fn damaged_textures_never_panic() {
     }
 }
 
+/// A volume that is split seven times over would have 129^3 points, more than two million: the grid is that of six levels.
+#[test]
+fn a_grid_that_were_too_fine_is_coarser() {
+    let mut deep = volume();
+    let leaf = Node::Leaf([0; 8]);
+    (deep.cells, deep.nodes) = ([1, 1, 1], vec![leaf; 1 + 7 * 8]);
+    for level in 0..7 {
+        deep.nodes[if level == 0 { 0 } else { 8 * level }] = Node::Split(1 + 8 * level as u32);
+    }
+    assert_eq!(deep.levels(), 7);
+    let grid = deep.grid(&[[1.0; 3]]).unwrap();
+    assert_eq!((grid.points, grid.step[0]), ([65; 3], 1.0 / 64.0));
+    assert_eq!((volume().levels(), volume().grid(&[[1.0; 3]]).unwrap().points), (1, [5, 7, 3]));
+}
+
 /// More layers than hardware reads, and more points than are sensible, are refused before memory is taken.
 #[test]
 fn what_no_hardware_reads_is_refused() {
