@@ -354,7 +354,8 @@ fn maps_are_lit() {
             for texel in 0..2 {
                 for channel in 0..3 {
                     let at = |i: usize| ((function * 4 + i) * 2 + texel) * channels + channel.min(channels - 1);
-                    let expected: f64 = (0..4).map(|i| f64::from(values[at(i)]) * f64::from(light[i][channel])).sum();
+                    let expected: f64 =
+                        light.iter().enumerate().map(|(i, l)| f64::from(values[at(i)]) * f64::from(l[channel])).sum();
                     let found = f64::from(lit.functions[function][texel][channel]);
                     assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
                 }
