@@ -2,7 +2,6 @@
 //!
 //! `cargo bench -p render-wgpu`; one frame is drawn before the clock starts, since drivers compile pipelines on first use.
 
-#[expect(dead_code, reason = "the tests use the rest")]
 #[path = "../tests/handmade/mod.rs"]
 mod handmade;
 
