@@ -142,5 +142,8 @@ fn for_gpu(frame: &Frame) -> render_wgpu::Frame {
         bloom: frame.bloom,
         supersample: frame.supersample,
         sky: frame.sky,
+        albedo: frame.albedo,
+        basis: frame.basis,
+        functions: frame.functions,
     }
 }

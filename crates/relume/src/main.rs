@@ -14,6 +14,7 @@ mod lens;
 mod light;
 mod light_facts;
 mod list;
+mod maps;
 mod output;
 mod picture;
 mod plan;
