@@ -3,6 +3,7 @@
 use crate::account::account;
 use crate::bundle::{Baked, bundle};
 use crate::directions::DirectionBank;
+use crate::extras::{Done, Extras};
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer};
 use crate::hit::{NearPoint, PackedHit, Source};
@@ -32,9 +33,17 @@ pub(crate) const NEAR_WORTH: f32 = 8.0;
 /// # Errors
 /// As [`bake`]; no rays are traced but those of a small survey, and of the look for edges to halve.
 pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
+    plan_with(scene, settings, &Extras::default())
+}
+
+/// [`plan`] for a bake with light maps or a volume.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_with(scene: &Scene, settings: &Settings, extras: &Extras) -> Result<Plan, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
-    Ok(prepare(scene, settings)?.plan)
+    Ok(prepare(scene, settings, extras)?.plan)
 }
 
 /// Precomputes how every vertex of a scene answers to distant light.
@@ -46,9 +55,21 @@ pub fn plan(scene: &Scene, settings: &Settings) -> Result<Plan, Error> {
 /// [`Error`] where the scene is empty or too large, a setting is out of range, memory does not suffice, or
 /// `progress` asked to stop.
 pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<Prt, Error> {
+    bake_with(scene, settings, &Extras::default(), progress)
+}
+
+/// [`bake`], and light maps or a volume from the same light between surfaces.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_with(scene: &Scene, settings: &Settings, extras: &Extras, progress: ProgressFn<'_>) -> Result<Prt, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, progress)?;
-    let Prepared { world, receivers, plan, traced } = prepare(scene, settings)?;
+    let prepared = prepare(scene, settings, extras)?;
+    if let Some(volume) = &extras.volume {
+        crate::volume::check(volume, scene, &prepared, settings, extras.light.is_some())?;
+    }
+    let Prepared { world, receivers, plan, traced } = prepared;
     let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
     // Where nothing is traced no directions are needed: the smallest set stands in.
     let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };
@@ -63,7 +84,7 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
         permanent: receivers.permanent as u32,
         worth: NEAR_WORTH * tolerance(settings.quality),
     };
-    let mut prt = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene)?;
+    let mut prt = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene, extras)?;
     prt.achieved.effects = account(scene, &prt, traced.len() as u64);
     Ok(prt)
 }
@@ -122,7 +143,7 @@ impl<'a> Run<'a> {
         Ok(run)
     }
 
-    fn finish(mut self, scene: &Scene) -> Result<Prt, Error> {
+    fn finish(mut self, scene: &Scene, extras: &Extras) -> Result<Prt, Error> {
         let all = (0..self.receivers.list.len() as u32).collect();
         self.room = self.settings.memory.saturating_sub(self.field_bytes());
         let mut chunks = self.first_pass(all, Stage::Visibility)?;
@@ -145,8 +166,28 @@ impl<'a> Run<'a> {
             openness.clear();
         }
         self.summarise(&repair);
-        let baked = Baked { transfer, openness, plan: self.plan, achieved: self.achieved };
-        Ok(bundle(scene, &self.receivers, self.settings, baked))
+        let (plan, achieved) = (self.plan.clone(), std::mem::take(&mut self.achieved));
+        let mut prt = bundle(
+            scene,
+            &self.receivers,
+            self.settings,
+            Baked { transfer: &transfer, openness, plan, achieved, extras },
+        );
+        self.done(scene, &transfer, extras).add(extras, &mut prt)?;
+        Ok(prt)
+    }
+
+    fn done<'b>(&'b self, scene: &'b Scene, transfer: &'b Field, extras: &'b Extras) -> Done<'b> {
+        Done {
+            scene,
+            gatherer: &self.gatherer,
+            receivers: &self.receivers,
+            transfer,
+            settings: self.settings,
+            plan: &self.plan,
+            light: extras.light.as_ref(),
+            monitor: &self.monitor,
+        }
     }
 
     /// Receivers inside bodies look again from where their surface comes out.

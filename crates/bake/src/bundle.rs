@@ -1,5 +1,6 @@
 //! Puts a scene, its plan and its transfer together as a file that needs nothing else.
 
+use crate::extras::Extras;
 use crate::field::Field;
 use crate::material::Facts;
 use crate::plan::simulates;
@@ -9,17 +10,18 @@ use scene::{AlphaMode, Mesh, Scene, TextureSlot, Wrap};
 use std::collections::BTreeMap;
 
 /// What a bake found, receiver by receiver.
-pub(crate) struct Baked {
-    pub(crate) transfer: Field,
+pub(crate) struct Baked<'a> {
+    pub(crate) transfer: &'a Field,
     /// Open share of each permanent receiver; empty where nothing is blocked.
     pub(crate) openness: Vec<f32>,
     pub(crate) plan: Plan,
     pub(crate) achieved: Achieved,
+    pub(crate) extras: &'a Extras,
 }
 
 /// Builds the file. Receivers keep their order: fronts, then the backs of two-sided materials.
-pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, baked: Baked) -> Prt {
-    let mut parts = Parts::new(scene, &baked.plan);
+pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, baked: Baked<'_>) -> Prt {
+    let mut parts = Parts::new(scene, &baked.plan, baked.extras);
     for (index, mesh) in scene.meshes.iter().enumerate() {
         parts.add_front(index, mesh);
     }
@@ -43,7 +45,7 @@ pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, 
         convention: sh_math::CONVENTION.to_owned(),
         scene: scene.name.clone(),
         settings: settings.clone(),
-        transfer: flattened(&baked.transfer, receivers.permanent, baked.plan.bands, baked.openness, albedo),
+        transfer: flattened(baked.transfer, receivers.permanent, baked.plan.bands, baked.openness, albedo),
         plan: baked.plan,
         achieved: baked.achieved,
         meshes: parts.meshes,
@@ -71,8 +73,9 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn new(scene: &'a Scene, plan: &Plan) -> Self {
-        let mut kept = KeptTextures { scene, index: BTreeMap::new(), textures: Vec::new() };
+    fn new(scene: &'a Scene, plan: &Plan, extras: &Extras) -> Self {
+        let directional = extras.is_directional();
+        let mut kept = KeptTextures { scene, directional, index: BTreeMap::new(), textures: Vec::new() };
         let materials: Vec<coeff_io::Material> = (0..scene.materials.len()).map(|m| kept.material(m, plan)).collect();
         let slots = || {
             materials.iter().flat_map(|m| {
@@ -86,7 +89,7 @@ impl<'a> Parts<'a> {
             scene,
             keep_tangents: materials.iter().any(|m| m.normal_texture.is_some()) && any(&|m| !m.tangents.is_empty()),
             has_uv0: slots().any(|s| s.uv_set == 0) && any(&|m| !m.uv0.is_empty()),
-            has_uv1: slots().any(|s| s.uv_set == 1) && any(&|m| !m.uv1.is_empty()),
+            has_uv1: (extras.maps.is_some() || slots().any(|s| s.uv_set == 1)) && any(&|m| !m.uv1.is_empty()),
             has_colors: any(&|m| !m.colors.is_empty()),
             meshes: Vec::new(),
             textures: kept.textures,
@@ -166,6 +169,8 @@ fn extend_or<T: Copy>(list: &mut Vec<T>, values: impl ExactSizeIterator<Item = T
 /// Textures that some drawn effect needs, in order of first use.
 struct KeptTextures<'a> {
     scene: &'a Scene,
+    /// Whether normal maps bend diffuse light.
+    directional: bool,
     index: BTreeMap<u32, u32>,
     textures: Vec<coeff_io::Texture>,
 }
@@ -176,7 +181,7 @@ impl KeptTextures<'_> {
         let specular = simulates(plan, Effect::Specular) && facts.shines;
         let emission = simulates(plan, Effect::Emission) && facts.emission > 0.0;
         let transmission = simulates(plan, Effect::Transmission);
-        let normal_maps = specular && simulates(plan, Effect::NormalMaps);
+        let normal_maps = (specular || self.directional) && simulates(plan, Effect::NormalMaps);
         coeff_io::Material {
             name: m.name.clone(),
             base_color: m.base_color.to_array(),

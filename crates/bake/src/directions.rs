@@ -3,13 +3,13 @@
 //! A receiver picks a set and a turn about its normal by a hash of its index. Directions are in the local frame
 //! (z along the normal); the local coefficients are rotated into the world once per receiver.
 
+use crate::domain::Domain;
 use crate::foresight::Surroundings;
 use coeff_io::{Quality, Sampler, Settings};
-use glam::Vec3;
 use rayon::prelude::*;
 use sampling::sequence::{self, Sequence};
 use sampling::{rng, warp};
-use sh_math::{Bands, zonal};
+use sh_math::Bands;
 
 /// Rays of the first step of a progressive set.
 const FIRST_STEP: usize = 128;
@@ -53,19 +53,24 @@ pub(crate) struct DirectionBank {
     sets: Vec<DirectionSet>,
     turns: Vec<[f32; 2]>,
     seed: u64,
-    /// Exact transfer of an open receiver about +z.
+    /// Over which directions is gathered, and what of it is judged.
+    pub(crate) domain: Domain,
+    /// Exact coefficients of an open receiver about +z.
     pub(crate) open: Vec<f64>,
-    /// Euclidean norm of `open`.
+    /// Euclidean norm of what is judged of `open`.
     pub(crate) open_norm: f64,
 }
 
 impl DirectionBank {
+    /// For the transfer of diffuse receivers.
     pub(crate) fn new(bands: Bands, settings: &Settings) -> Self {
+        Self::over(Domain::Cosine, bands, settings)
+    }
+
+    pub(crate) fn over(domain: Domain, bands: Bands, settings: &Settings) -> Self {
         let coefficients = bands.coefficients();
         let n_sets = if coefficients <= 64 { 16 } else { 4 };
-        let mut open = vec![0.0f32; coefficients];
-        zonal::cosine_transfer(bands, Vec3::Z, &mut open);
-        let open: Vec<f64> = open.into_iter().map(f64::from).collect();
+        let open = domain.open(bands);
         let turns = (0..TURNS).map(|i| {
             let angle = std::f64::consts::TAU * i as f64 / TURNS as f64;
             [libm::cos(angle) as f32, libm::sin(angle) as f32]
@@ -73,12 +78,13 @@ impl DirectionBank {
         Self {
             sets: (0..n_sets)
                 .into_par_iter()
-                .map(|k| DirectionSet::new(bands, settings, rng::hash(settings.seed, 0x5e7, k)))
+                .map(|k| DirectionSet::new(&domain, bands, settings, rng::hash(settings.seed, 0x5e7, k)))
                 .collect(),
             turns: turns.collect(),
             seed: settings.seed,
-            open_norm: open.iter().map(|x| x * x).sum::<f64>().sqrt(),
+            open_norm: domain.judged(&open).iter().map(|x| x * x).sum::<f64>().sqrt(),
             open,
+            domain,
         }
     }
 
@@ -96,7 +102,7 @@ impl DirectionBank {
 }
 
 impl DirectionSet {
-    fn new(bands: Bands, settings: &Settings, seed: u64) -> Self {
+    fn new(domain: &Domain, bands: Bands, settings: &Settings, seed: u64) -> Self {
         let (count, ends) = steps(settings.quality);
         let mut set = Self {
             xs: Vec::new(),
@@ -107,22 +113,23 @@ impl DirectionSet {
             steps: Vec::new(),
             surroundings: Surroundings::default(),
         };
-        set.fill(settings.sampler, count, &ends, seed);
+        set.fill(domain, settings.sampler, count, &ends, seed);
         set.evaluate(bands);
         if ends.len() > 1 {
-            set.surroundings = Surroundings::new(&set.xs, &set.ys, &ends);
+            let [xs, ys] = domain.feet(&set.xs, &set.ys, &set.zs);
+            set.surroundings = Surroundings::new(&xs, &ys, &ends);
         }
         let n = set.xs.len();
         for end in ends {
             // A set over the whole sphere has fewer directions than samples, and a single step.
-            let end = if settings.sampler == Sampler::Stratified { n } else { end };
+            let end = if settings.sampler == Sampler::Stratified { n } else { end.min(n) };
             set.steps.push(set.step(bands, end, if end == n { count } else { end }));
         }
         set
     }
 
     /// Fills in directions; within a step, neighbours in the list point in similar directions, which makes rays cheap.
-    fn fill(&mut self, sampler: Sampler, count: usize, ends: &[usize], seed: u64) {
+    fn fill(&mut self, domain: &Domain, sampler: Sampler, count: usize, ends: &[usize], seed: u64) {
         let kind = match sampler {
             Sampler::OwenSobol => Sequence::OwenSobol,
             Sampler::Fibonacci => Sequence::Fibonacci,
@@ -136,15 +143,19 @@ impl DirectionSet {
             start = end;
         }
         for point in points {
-            let (direction, weight) = match sampler {
-                Sampler::OwenSobol | Sampler::Fibonacci => (warp::square_to_cosine_hemisphere(point), 1.0),
+            let (direction, weight) = match (domain, sampler) {
+                (Domain::Cosine, Sampler::OwenSobol | Sampler::Fibonacci) => {
+                    (warp::square_to_cosine_hemisphere(point), 1.0)
+                }
                 // [G] eq. (21): uniform over the sphere, so the cosine is a weight: 4 pi / N * z / pi.
-                Sampler::Stratified => {
+                (Domain::Cosine, Sampler::Stratified) => {
                     let direction = warp::square_to_uniform_sphere(point);
                     (direction, 4.0 * direction.z)
                 }
+                (Domain::Hemisphere(_), _) => (warp::square_to_uniform_hemisphere(point), 1.0),
+                (Domain::Sphere(_), _) => (warp::square_to_uniform_sphere(point), 1.0),
             };
-            if direction.z > 0.0 {
+            if direction.z > 0.0 || matches!(domain, Domain::Sphere(_)) {
                 self.xs.push(direction.x);
                 self.ys.push(direction.y);
                 self.zs.push(direction.z);

@@ -52,21 +52,31 @@ pub(crate) fn specular(table: &Table<'_>) -> PlanRow {
 
 pub(crate) fn normal_maps(table: &Table<'_>) -> PlanRow {
     let (f, d) = (table.facts, table.decisions);
-    let stake = largest(table, |m| if m.shines && m.bumpy { m.reflectance } else { 0.0 });
+    let stake = match f.directional {
+        true => f32::from(u8::from(f.bumpy.any())),
+        false => largest(table, |m| if m.shines && m.bumpy { m.reflectance } else { 0.0 }),
+    };
     let idle = match f.idle_bumps {
         0 => String::new(),
         n => format!("; {n} more are on matt materials, where they would bend nothing"),
     };
+    let (decision, takes) = match f.directional {
+        true => ("directional light maps", "diffuse light is kept for every normal"),
+        false => ("bend reflections only", "the transfer takes the plain normals"),
+    };
+    let which = if f.directional { "materials" } else { "materials that shine" };
     let words = Words {
-        decision: if d.normal_maps { "bend reflections only".into() } else { "plain transfer".into() },
+        decision: if d.normal_maps { decision.into() } else { "plain transfer".into() },
         reason: match f.bumpy.count() {
-            0 => format!("no material that shines has a normal map{idle}"),
-            n => format!("{n} materials that shine have normal maps; the transfer takes the plain normals{idle}"),
+            0 => format!("none of the {which} has a normal map{idle}"),
+            n => format!("{n} {which} have normal maps; {takes}{idle}"),
         },
         stake,
-        at_stake: match f.bumpy.any() {
-            false => "nothing is drawn with them; creases in diffuse light are not modelled".into(),
-            true => format!("creases missing from reflections of up to {} of the light", percent(stake)),
+        at_stake: match (f.bumpy.any(), f.directional) {
+            (false, true) => "nothing: no normal is bent".into(),
+            (false, false) => "nothing is drawn with them; creases in diffuse light are not modelled".into(),
+            (true, true) => "creases missing from diffuse light: up to all of it where a normal turns away".into(),
+            (true, false) => format!("creases missing from reflections of up to {} of the light", percent(stake)),
         },
     };
     let row = table.row(Effect::NormalMaps, d.normal_maps, &f.bumpy, words);

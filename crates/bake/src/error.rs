@@ -44,6 +44,30 @@ pub enum Error {
         /// Bytes that were allowed.
         allowed: u64,
     },
+    /// Light maps do not fit into the memory allowed.
+    #[error(
+        "light maps of {texels} texels need {needed} bytes, more than the {allowed} of --memory; use fewer --texels, fewer --bands, a fixed light, or allow more"
+    )]
+    MapMemory {
+        /// Texels that surfaces touch.
+        texels: usize,
+        /// Bytes that are needed at once.
+        needed: u64,
+        /// Bytes that were allowed.
+        allowed: u64,
+    },
+    /// The probes of a volume do not fit into the memory that the light between surfaces leaves.
+    #[error(
+        "the volume of {probes} probes needs {needed} bytes, more than the {left} that are left of --memory; use a wider --volume spacing, fewer --volume-levels or allow more"
+    )]
+    VolumeMemory {
+        /// Probes of the volume.
+        probes: u64,
+        /// Bytes that they take.
+        needed: u64,
+        /// Bytes that were left.
+        left: u64,
+    },
     /// The progress callback asked to stop.
     #[error("the bake was cancelled; no file was written")]
     Cancelled,

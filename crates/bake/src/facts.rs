@@ -55,8 +55,11 @@ pub(crate) struct Facts {
     pub(crate) masked: Named,
     pub(crate) holed: Named,
     pub(crate) shiny: Named,
+    /// Those with normal maps that bend something: all that shine, and with directional light maps all.
     pub(crate) bumpy: Named,
-    /// Number of materials whose normal maps bend nothing, since they do not shine.
+    /// Whether normal maps bend diffuse light.
+    pub(crate) directional: bool,
+    /// Number of materials whose normal maps bend nothing.
     pub(crate) idle_bumps: usize,
     pub(crate) emissive: Named,
     pub(crate) transmissive: Named,
@@ -70,7 +73,7 @@ pub(crate) struct Facts {
 
 impl Facts {
     /// Looks at every material; receivers are still to be added. Where the settings leave transmission out, all blocks.
-    pub(crate) fn of_materials(scene: &Scene, settings: &Settings) -> Self {
+    pub(crate) fn of_materials(scene: &Scene, settings: &Settings, directional: bool) -> Self {
         let mut materials: Vec<material::Facts> =
             (0..scene.materials.len()).map(|m| material::Facts::of(scene, m)).collect();
         if !allowed(settings, Effect::Transmission) {
@@ -96,8 +99,9 @@ impl Facts {
             masked: named(&|m| m.masked),
             holed: named(&|m| m.holes > 0.0),
             shiny: named(&|m| m.shines),
-            bumpy: named(&|m| m.bumpy && m.shines),
-            idle_bumps: materials.iter().filter(|m| m.bumpy && !m.shines).count(),
+            bumpy: named(&|m| m.bumpy && (m.shines || directional)),
+            directional,
+            idle_bumps: materials.iter().filter(|m| m.bumpy && !m.shines && !directional).count(),
             emissive: named(&|m| m.emission > 0.0),
             transmissive: named(&|m| m.transmits),
             moving: Named { names: scene.moving.clone() },

@@ -1,6 +1,7 @@
 //! What one receiver sees: its direct transfer, and the surfaces that block its view.
 
 use crate::directions::{DirectionBank, DirectionSet, Step};
+use crate::domain::Domain;
 use crate::foresight::Choice;
 use crate::hit::{NearPoint, PackedHit, near_points, packed};
 use crate::receivers::Receiver;
@@ -10,7 +11,7 @@ use glam::{Mat3, Vec3};
 use raytrace::{FanState, Hit, offset_origin};
 use sampling::estimate::{Doubling, Verdict};
 use sampling::frame::Frame;
-use sh_math::{Bands, rotate::Rotation, zonal};
+use sh_math::{Bands, rotate::Rotation};
 
 /// All that the gathering of any receiver needs.
 pub(crate) struct Gatherer<'a> {
@@ -87,17 +88,17 @@ impl Gatherer<'_> {
     pub(crate) fn gather(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Gathered {
         let (mut out, step) = self.direct(receiver, index, worker);
         if out.openness < 1.0 {
-            let origin = offset_origin(receiver.position, receiver.geometric_normal);
-            let (set, _) = self.bank.pick(index);
-            out.bounce_rays = self.trace_blockers(origin, set.steps[step].end, index, worker);
-            self.pack(set, index, worker, &mut out);
+            let blockers = self.blockers(receiver, index, step, out.openness, worker);
+            self.pack(blockers, index, &mut out);
         }
         out
     }
 
     /// Direct transfer alone, and the step of the direction set that it took; what blocks is not looked up.
     pub(crate) fn direct(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> (Gathered, usize) {
-        if !(self.visibility && self.world.can_shadow(receiver)) {
+        // A point in space has no tangent plane that could spare it the rays.
+        let in_space = matches!(self.bank.domain, Domain::Sphere(_));
+        if !(self.visibility && (in_space || self.world.can_shadow(receiver))) {
             return (self.unshadowed(receiver), 0);
         }
         let origin = offset_origin(receiver.position, receiver.geometric_normal);
@@ -126,11 +127,13 @@ impl Gatherer<'_> {
         ((256 << 20) / bytes).max(1)
     }
 
-    /// Closed form of \[G\] eq. (22): nothing can stand in the way.
+    /// Closed form, for diffuse receivers \[G\] eq. (22): nothing can stand in the way.
     fn unshadowed(&self, receiver: &Receiver) -> Gathered {
-        let mut transfer = vec![0.0; self.bands.coefficients()];
-        zonal::cosine_transfer(self.bands, receiver.normal, &mut transfer);
-        Gathered { transfer, openness: 1.0, ..Gathered::default() }
+        Gathered {
+            transfer: self.bank.domain.open_about(self.bands, receiver.normal),
+            openness: 1.0,
+            ..Gathered::default()
+        }
     }
 
     /// Doubles the rays until the estimate meets the error asked for, or the set is spent.
@@ -162,7 +165,7 @@ impl Gatherer<'_> {
             seen.step = number;
             seen.openness = open_weight / step.weight;
             seen.local = self.corrected(&sums, seen.openness, step);
-            match rule.look(&mut progress, step.end as u32, &seen.local) {
+            match rule.look(&mut progress, step.end as u32, &self.bank.domain.judged(&seen.local)) {
                 Verdict::Continue { .. } => {}
                 // Too few rays to tell so small an error, whatever they met.
                 Verdict::Reached { .. }
@@ -195,8 +198,7 @@ impl Gatherer<'_> {
     /// Half of what a single ray would change if all counted the same: no estimate is below it, since where all rays of two looks
     /// met the same the change is zero, however many more it would take to find the gap.
     fn resolution(&self, rays: u64) -> f64 {
-        // The squares of the basis add up to n^2 / (4 pi) in every direction.
-        0.5 * (self.bands.coefficients() as f64 / (4.0 * std::f64::consts::PI)).sqrt() / rays as f64
+        0.5 * self.bank.domain.norm_of_direction(self.bands) / rays as f64
     }
 
     /// Adds to the sum over open directions what the sequence misses of the exact cosine lobe, in proportion to
@@ -263,24 +265,44 @@ impl Gatherer<'_> {
         chosen as u64
     }
 
-    fn pack(&self, set: &DirectionSet, index: u32, worker: &Worker, out: &mut Gathered) {
-        let found = || worker.nearest.iter().enumerate().filter_map(|(j, hit)| hit.map(|h| (j, h)));
+    /// What blocks the directions that were found blocked up to a step of the set, after [`Gatherer::direct`].
+    pub(crate) fn blockers(
+        &self,
+        receiver: &Receiver,
+        index: u32,
+        step: usize,
+        openness: f32,
+        worker: &mut Worker,
+    ) -> Blockers {
+        let origin = offset_origin(receiver.position, receiver.geometric_normal);
+        let (set, _) = self.bank.pick(index);
+        let rays = self.trace_blockers(origin, set.steps[step].end, index, worker);
+        let found = worker.nearest.iter().enumerate().filter_map(|(j, hit)| hit.map(|hit| (j, hit)));
         // A direction that was foreseen to be open and is not stands for its like that were not tried.
         let weight = |j: usize| f64::from(set.weights[j]) * f64::from(1.0 - worker.open[j]);
-        let total: f64 = found().map(|(j, _)| weight(j)).sum();
+        let found: Vec<(usize, Hit, f64)> = found.map(|(j, hit)| (j, hit, weight(j))).collect();
+        let total: f64 = found.iter().map(|(_, _, weight)| weight).sum();
         if total <= 0.0 {
-            return;
+            return Blockers { rays, ..Blockers::default() };
         }
-        let scale = (1.0 - f64::from(out.openness)) / total;
+        let scale = (1.0 - f64::from(openness)) / total;
         let is_inside = |hit: &Hit| !hit.front && !self.world.double_sided(hit.triangle);
-        let inside: f64 = found().filter(|(_, hit)| is_inside(hit)).map(|(j, _)| weight(j)).sum();
-        out.inside_share = (inside / total) as f32;
-        if !self.hits {
+        let inside: f64 = found.iter().filter(|(_, hit, _)| is_inside(hit)).map(|(_, _, weight)| weight).sum();
+        let [xs, ys, zs] = &worker.directions;
+        let direction = |j: usize| Vec3::new(xs[j], ys[j], zs[j]);
+        let found = found.into_iter().map(|(j, hit, weight)| (direction(j), hit, (weight * scale) as f32));
+        Blockers { rays, inside_share: (inside / total) as f32, found: found.collect() }
+    }
+
+    fn pack(&self, blockers: Blockers, index: u32, out: &mut Gathered) {
+        out.bounce_rays = blockers.rays;
+        out.inside_share = blockers.inside_share;
+        if !self.hits || blockers.found.is_empty() {
             return;
         }
-        let weighed = found().map(|(j, hit)| (hit, (weight(j) * scale) as f32));
+        let weighed = blockers.found.into_iter();
         let weighed: Vec<(Hit, Vec3)> =
-            weighed.map(|(hit, weight)| (hit, self.world.albedo(hit.triangle, hit.u, hit.v) * weight)).collect();
+            weighed.map(|(_, hit, weight)| (hit, self.world.albedo(hit.triangle, hit.u, hit.v) * weight)).collect();
         if index < self.permanent && !crate::repair::is_inside(out.openness, out.inside_share) {
             out.near = near_points(self.world, &weighed, self.worth);
         }
@@ -297,6 +319,17 @@ const HELPER_BLOCKERS: usize = 256;
 
 /// Changes of the estimate that count for its error. More would lean on how errors fell when the directions were few.
 const REMEMBERED: usize = 4;
+
+/// The surfaces that block directions.
+#[derive(Debug, Default)]
+pub(crate) struct Blockers {
+    /// Closest-hit rays traced.
+    pub(crate) rays: u64,
+    /// Share of them that meets the inside of a body.
+    pub(crate) inside_share: f32,
+    /// World directions, what they meet, and their weights, which sum to what is not open.
+    pub(crate) found: Vec<(Vec3, Hit, f32)>,
+}
 
 /// What the any-hit rays found, in the local frame.
 struct Seen {

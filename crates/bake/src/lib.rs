@@ -9,18 +9,22 @@
 
 mod account;
 mod albedo;
+mod arrival;
 mod bake;
 mod bandwidth;
 mod bend;
 mod bundle;
 mod directions;
+mod domain;
 mod drawn;
 mod error;
+mod extras;
 mod facts;
 mod field;
 mod foresight;
 mod gather;
 mod hit;
+mod maps;
 mod material;
 mod passes;
 mod plan;
@@ -35,10 +39,14 @@ mod senders;
 pub mod settings;
 mod split;
 mod survey;
+mod volume;
 mod world;
 
-pub use crate::bake::{ProgressFn, bake, plan};
+pub use crate::bake::{ProgressFn, bake, bake_with, plan, plan_with};
+pub use crate::maps::{MapSettings, SheetSettings};
+pub use crate::volume::{VolumePlace, VolumeSettings, VolumeSteps};
 pub use error::Error;
+pub use extras::{Extras, FixedLight};
 pub use price::{Price, price};
 pub use progress::{Progress, Stage};
 pub use receivers::{Receiver, Receivers};

@@ -1,6 +1,7 @@
 //! Decides, from the scene, which effects are simulated.
 
 use crate::bandwidth;
+use crate::extras::Extras;
 use crate::facts::Facts;
 use crate::receivers::Receivers;
 use crate::rows;
@@ -21,9 +22,9 @@ pub(crate) struct Prepared<'a> {
 }
 
 /// Looks at a scene that is split already, and decides. No ray is traced but those of the survey.
-pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings) -> Result<Prepared<'a>, Error> {
+pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings, extras: &Extras) -> Result<Prepared<'a>, Error> {
     let mut receivers = Receivers::of(scene);
-    let mut facts = Facts::of_materials(scene, settings);
+    let mut facts = Facts::of_materials(scene, settings, extras.is_directional());
     let mut world = world(scene, &facts, settings)?;
     facts.add_receivers(scene, &world, &receivers);
     world.trace_all = is_forced(settings);
@@ -98,7 +99,10 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
         color: interreflection && wanted(Effect::Color, facts.colored.any()),
         masks: drawn(Effect::Masks, facts.holed.any() || forced && facts.masked.any()),
         specular: drawn(Effect::Specular, facts.shiny.any()),
-        normal_maps: drawn(Effect::NormalMaps, facts.bumpy.any() && allowed(settings, Effect::Specular)),
+        normal_maps: drawn(
+            Effect::NormalMaps,
+            facts.bumpy.any() && (facts.directional || allowed(settings, Effect::Specular)),
+        ),
         emission: drawn(Effect::Emission, facts.emissive.any()),
         transmission: drawn(Effect::Transmission, facts.transmissive.any()),
         traced,
@@ -141,7 +145,7 @@ fn meshes(facts: &Facts, d: &Decisions) -> Vec<MeshPlan> {
             Effect::Color => d.color && lit,
             Effect::Masks => d.masks && material.holes > 0.0,
             Effect::Specular => d.specular && material.shines,
-            Effect::NormalMaps => d.normal_maps && material.shines && material.bumpy,
+            Effect::NormalMaps => d.normal_maps && (material.shines || facts.directional) && material.bumpy,
             Effect::Emission => d.emission && material.emission > 0.0,
             Effect::Transmission => d.transmission && material.transmits,
             // Bands are the same for all, and motion is not simulated.

@@ -8,7 +8,7 @@ use crate::passes::{Chunk, Monitor, bounce_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::Stage;
 use crate::receivers::morton_order;
-use crate::{Error, settings};
+use crate::{Error, Extras, settings};
 use coeff_io::{Effect, Plan, Settings};
 use rayon::prelude::*;
 use scene::Scene;
@@ -43,7 +43,7 @@ pub fn price(scene: &Scene, settings: &Settings, now: &dyn Fn() -> Duration) -> 
     settings::check(settings)?;
     let began = now();
     let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
-    let prepared = prepare(scene, settings)?;
+    let prepared = prepare(scene, settings, &Extras::default())?;
     let preparation = (now() - began).as_secs_f64();
     let mut price = Price { plan: prepared.plan.clone(), preparation, visibility: 0.0, interreflection: 0.0, tried: 0 };
     if simulates(&price.plan, Effect::Visibility) && !prepared.traced.is_empty() {

@@ -5,7 +5,7 @@
 pub struct Progress {
     /// What is being computed.
     pub stage: Stage,
-    /// Receivers (of the refinement: points between vertices) finished in this stage.
+    /// Receivers (of the refinement: points between vertices; of a volume: probes) finished in this stage.
     pub done: u64,
     /// Receivers of this stage.
     pub total: u64,
@@ -24,6 +24,10 @@ pub enum Stage {
     Helpers,
     /// The n-th bounce, from 1.
     Bounce(u32),
+    /// What arrives at the texels of light maps.
+    Texels,
+    /// What arrives at the probes of a volume.
+    Probes,
 }
 
 impl std::fmt::Display for Stage {
@@ -33,6 +37,8 @@ impl std::fmt::Display for Stage {
             Self::Visibility => write!(f, "visibility"),
             Self::Helpers => write!(f, "backs and near surfaces"),
             Self::Bounce(n) => write!(f, "bounce {n}"),
+            Self::Texels => write!(f, "texels"),
+            Self::Probes => write!(f, "probes"),
         }
     }
 }

@@ -51,7 +51,7 @@ pub fn refine_watched<'a>(
             if !allowed(settings, Effect::Visibility) {
                 return Ok(Cow::Borrowed(scene));
             }
-            let world = world(scene, &Facts::of_materials(scene, settings), settings)?;
+            let world = world(scene, &Facts::of_materials(scene, settings, false), settings)?;
             if !has_shadows(scene, &world) {
                 return Ok(Cow::Borrowed(scene));
             }

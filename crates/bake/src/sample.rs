@@ -5,7 +5,7 @@ use crate::directions::DirectionBank;
 use crate::gather::{Gatherer, Worker};
 use crate::plan::prepare;
 use crate::receivers::morton_order;
-use crate::{Error, settings};
+use crate::{Error, Extras, settings};
 use coeff_io::Settings;
 use rayon::prelude::*;
 use scene::Scene;
@@ -33,7 +33,7 @@ pub struct Sampled {
 pub fn sample(scene: &Scene, settings: &Settings, count: usize) -> Result<Vec<Sampled>, Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
-    let prepared = prepare(scene, settings)?;
+    let prepared = prepare(scene, settings, &Extras::default())?;
     let bands = Bands::new(prepared.plan.bands).expect("no more than the settings ask for");
     let bank = DirectionBank::new(bands, settings);
     let gatherer = Gatherer {

@@ -25,9 +25,14 @@ impl Sender {
         if self.key & NEAR != 0 {
             return receivers.near_of[receiver as usize] + number;
         }
-        let back = if self.key & BACK == 0 { NONE } else { receivers.back_of[number as usize] };
-        if back == NONE { number } else { back }
+        resolve(number, self.key & BACK != 0, receivers)
     }
+}
+
+/// The receiver on a side of a vertex: the front where the back has none.
+pub(crate) fn resolve(vertex: u32, is_back: bool, receivers: &Receivers) -> u32 {
+    let back = if is_back { receivers.back_of[vertex as usize] } else { NONE };
+    if back == NONE { vertex } else { back }
 }
 
 /// The rows of the receivers of a chunk.

@@ -49,6 +49,8 @@ fn sealed(scene: &str, [x, y, z]: [f32; 3]) -> bool {
     match scene {
         "teacup" => y < 0.013 && x.hypot(z) < 0.045,
         "sphere-on-plane" => y < 0.06 && x.hypot(z) < 0.25,
+        // One of the rooms has no opening at all.
+        "two-rooms" => (-2.04..-0.03).contains(&x) && (-0.01..2.01).contains(&y) && z.abs() < 1.01,
         _ => false,
     }
 }

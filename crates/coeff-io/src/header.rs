@@ -1,6 +1,6 @@
 //! The header chunk: every small record of a [`Prt`] in one bincode blob. The only file that knows bincode.
 
-use crate::{Achieved, Camera, Error, Material, Mesh, Plan, Prt, Settings, Wrap};
+use crate::{Achieved, Camera, Error, MapsHeader, Material, Mesh, Plan, Prt, Settings, VolumeHeader, Wrap};
 use bincode::config::{self, Configuration, Fixint, Limit, LittleEndian};
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +31,10 @@ pub struct Header {
     pub cameras: Vec<Camera>,
     /// The pictures, whose pixels are chunks of their own.
     pub textures: Vec<TextureHeader>,
+    /// Light maps, where there are any.
+    pub maps: Option<MapsHeader>,
+    /// An irradiance volume, where there is one.
+    pub volume: Option<VolumeHeader>,
 }
 
 /// A texture without its pixels.
@@ -69,6 +73,8 @@ impl Header {
             materials: prt.materials.clone(),
             cameras: prt.cameras.clone(),
             textures: prt.textures.iter().map(texture).collect(),
+            maps: prt.maps.as_ref().map(MapsHeader::of),
+            volume: prt.volume.as_ref().map(VolumeHeader::of),
         }
     }
 

@@ -1,6 +1,13 @@
 //! Pictures of coefficients, one upon the other, as a file holds them.
 
+use crate::block::{Bc1, Bc6h};
+use crate::{block, eight_bits};
+use half::f16;
+use serde::{Deserialize, Serialize};
+
 /// Layers of texels: `[layer][row][column][channel]`.
+///
+/// [`Layers::encode`] makes them, [`Layers::decode`] gives the numbers back; `docs/format.md` describes the bytes of each encoding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layers {
     /// Texels along u.
@@ -13,15 +20,40 @@ pub struct Layers {
     pub channels: u32,
     /// How the numbers are held.
     pub encoding: Encoding,
-    /// The numbers.
+    /// The numbers, with all that is needed to decode them: their length is what the encoding costs.
     pub bytes: Vec<u8>,
 }
 
 /// How numbers of a layer are held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Encoding {
     /// Little-endian f32.
     F32,
+    /// Little-endian IEEE 754 half.
+    F16,
+    /// Eight bits between the least and the greatest number of each chart and layer.
+    U8,
+    /// Blocks of 4x4 texels in 8 bytes: BC1, also called DXT1, between the least and the greatest number of each layer and channel.
+    Bc1,
+    /// Blocks of 4x4 texels in 16 bytes: unsigned BC6H, above the least number of each layer.
+    Bc6h,
+}
+
+impl Encoding {
+    /// Every encoding, the most exact first.
+    pub const ALL: [Self; 5] = [Self::F32, Self::F16, Self::U8, Self::Bc6h, Self::Bc1];
+
+    /// The name as typed and printed, such as `bc6h`.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F16 => "f16",
+            Self::U8 => "u8",
+            Self::Bc1 => "bc1",
+            Self::Bc6h => "bc6h",
+        }
+    }
 }
 
 impl Layers {
@@ -37,11 +69,60 @@ impl Layers {
         Self { width, height, count, channels, encoding: Encoding::F32, bytes }
     }
 
+    /// Texels of a layer.
+    pub(crate) fn plane(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// Numbers of all layers; none where they are too many to count.
+    fn numbers(&self) -> Option<usize> {
+        let sizes = [self.width, self.height, self.count, self.channels];
+        sizes.into_iter().try_fold(1_usize, |product, n| product.checked_mul(n as usize))
+    }
+
+    /// The first byte that contradicts the sizes and what is wrong there; none where all is sound. Sides and channels are taken
+    /// for checked; nothing is allocated.
+    pub(crate) fn fault(&self) -> Option<(usize, String)> {
+        let expected = match self.encoding {
+            Encoding::F32 => self.numbers().and_then(|n| n.checked_mul(4)),
+            Encoding::F16 => self.numbers().and_then(|n| n.checked_mul(2)),
+            Encoding::U8 => return eight_bits::fault(self),
+            Encoding::Bc1 => block::length::<Bc1>(self),
+            Encoding::Bc6h => block::length::<Bc6h>(self),
+        };
+        if expected != Some(self.bytes.len()) {
+            return Some((0, format!("{} bytes are not what its sizes demand", self.bytes.len())));
+        }
+        let infinite = |step: usize, finite: fn(&[u8]) -> bool| self.bytes.chunks_exact(step).position(|b| !finite(b));
+        match self.encoding {
+            Encoding::F16 => infinite(2, |b| f16::from_le_bytes([b[0], b[1]]).is_finite())
+                .map(|place| (2 * place, format!("number {place} is not finite"))),
+            Encoding::Bc1 => block::fault::<Bc1>(self),
+            Encoding::Bc6h => block::fault::<Bc6h>(self),
+            _ => infinite(4, |b| f32_at(b, 0).is_finite())
+                .map(|place| (4 * place, format!("number {place} is not finite"))),
+        }
+    }
+
     /// The numbers as f32: `[layer][row][column][channel]`.
+    ///
+    /// The same on every machine. Layers of a file were checked when it was read.
+    ///
+    /// # Panics
+    /// When the bytes are not what sizes and encoding demand.
     #[must_use]
     pub fn decode(&self) -> Vec<f32> {
         match self.encoding {
-            Encoding::F32 => self.bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect(),
+            Encoding::F32 => self.bytes.chunks_exact(4).map(|b| f32_at(b, 0)).collect(),
+            Encoding::F16 => self.bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect(),
+            Encoding::U8 => eight_bits::decode(self),
+            Encoding::Bc1 => block::decode::<Bc1>(self),
+            Encoding::Bc6h => block::decode::<Bc6h>(self),
         }
     }
+}
+
+/// The f32 that begins at byte `at`.
+pub(crate) fn f32_at(bytes: &[u8], at: usize) -> f32 {
+    f32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]))
 }

@@ -4,7 +4,13 @@
 //! error and the id of the spherical harmonics convention. `docs/format.md` describes the file byte by byte.
 
 mod array;
+mod bc1;
+mod bc6h;
+mod bc6h_mode;
+mod block;
 mod camera;
+mod coding;
+mod eight_bits;
 mod error;
 pub mod export;
 mod header;
@@ -12,6 +18,8 @@ mod inspect;
 mod layers;
 mod lit;
 mod map;
+mod map_error;
+mod map_header;
 mod model;
 mod plan;
 mod read;
@@ -19,17 +27,25 @@ mod record;
 mod replace;
 mod table;
 mod validate;
+mod validate_maps;
+mod validate_volume;
 mod volume;
+mod volume_header;
 mod write;
 
+pub use block::Blocks;
+pub use coding::{Coding, Curve, Effort, Encoded, Ranges, curves, linear_of_srgb, srgb_of_linear};
 pub use error::Error;
 pub use header::{Header, TextureHeader};
 pub use inspect::{Inspection, check, inspect};
 pub use layers::{Encoding, Layers};
 pub use map::{Lit, MapLight, Maps, Sheet};
+pub use map_error::{MapError, normals};
+pub use map_header::{MapsHeader, SheetHeader, basis_id, basis_of};
 pub use model::{AlphaMode, Camera, Geometry, Material, Mesh, Prt, Texture, TextureSlot, Transfer, Wrap};
 pub use plan::{Effect, EffectCost, MeshPlan, Plan, PlanRow, Survey};
 pub use record::{Achieved, BandChoice, Bounces, Effects, Quality, Refine, RepairCounts, Sampler, Settings};
 pub use replace::replace;
 pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};
 pub use volume::{Node, Volume};
+pub use volume_header::VolumeHeader;

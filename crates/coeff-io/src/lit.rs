@@ -43,19 +43,26 @@ impl Maps {
         }
         self.sheets.iter().enumerate().find_map(|(i, sheet)| {
             let layers = &sheet.layers;
-            let expected = self.basis.count() * self.light.depth();
             let numbers = [layers.width, layers.height, layers.count, layers.channels].map(u64::from);
             let whole = numbers.into_iter().try_fold(1u64, u64::checked_mul);
             let sound = layers.width > 0 && layers.height > 0 && matches!(layers.channels, 1 | 3);
-            if !sound || layers.count as usize != expected || whole != Some(layers.decode().len() as u64) {
+            if !sound || !self.holds(layers.count) || whole != Some(layers.decode().len() as u64) {
                 let [width, height, count, channels] = numbers;
                 return Some(format!(
-                    "light map {i} has {count} layers of {width} x {height} texels with {channels} channels where {expected} layers \
-                     of as many numbers are due"
+                    "light map {i} has {count} layers of {width} x {height} texels with {channels} channels, which do not make up {} \
+                     functions", self.basis.count()
                 ));
             }
             None
         })
+    }
+
+    /// Whether a sheet of so many layers holds all functions, or as many as the basis can be cut to.
+    #[must_use]
+    pub fn holds(&self, layers: u32) -> bool {
+        let depth = self.light.depth();
+        let held = layers as usize / depth;
+        layers as usize == held * depth && (held == self.basis.count() || self.basis.cut(held).is_some())
     }
 
     /// Whether any mesh shows a map.

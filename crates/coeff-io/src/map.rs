@@ -1,6 +1,7 @@
 //! Directional light maps: the light that arrives at the texels of a sheet, as a function of the normal that a normal map asks for.
 
 use crate::Layers;
+use serde::{Deserialize, Serialize};
 use sh_math::hemisphere::Basis;
 
 /// Sheets of coefficients, and which meshes they lie upon (by their second texture coordinates).
@@ -21,7 +22,7 @@ pub struct Maps {
 }
 
 /// What the coefficients of maps and volumes hold.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MapLight {
     /// Light of one probe, as it lay: RGB per function.
     Fixed {
@@ -50,6 +51,9 @@ impl MapLight {
 
 /// The coefficients of one sheet. Layer `function * depth + i` is coefficient `i` of the light in a function ([`MapLight::depth`]); texel
 /// row 0 is at v = 0.
+///
+/// A sheet holds all functions of the basis, or the first few where the others are 0 and the basis can be cut there: the modified H-basis
+/// holds one where no normal map is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
     /// The layers.
@@ -76,9 +80,10 @@ impl Sheet {
         let plane = layers.width as usize * layers.height as usize;
         let channels = layers.channels as usize;
         let rgb = |values: &[f32]| [values[0], values[1 % channels], values[2 % channels]];
+        let held = layers.count as usize / depth;
         let function = |k: usize| {
             let mut sum = vec![[0.0f32; 3]; plane];
-            for i in 0..depth {
+            for i in 0..if k < held { depth } else { 0 } {
                 let factor = match maps.light {
                     MapLight::Fixed { .. } => [1.0; 3],
                     MapLight::Relightable { .. } => light[i],

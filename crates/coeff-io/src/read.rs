@@ -1,6 +1,7 @@
 //! Bytes become a [`Prt`].
 
 use crate::table::{self, Chunk, Kind};
+use crate::volume_header::VolumeArrays;
 use crate::{Error, Geometry, Header, Prt, Texture, Transfer, array, validate};
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -67,11 +68,13 @@ struct Arrays {
     geometry: Geometry,
     transfer: Transfer,
     pictures: Vec<Vec<[u8; 4]>>,
+    sheets: Vec<Vec<u8>>,
+    volume: VolumeArrays,
 }
 
 impl Arrays {
     fn read(&mut self, chunk: &Chunk, from: &mut impl Read) -> Result<(), Error> {
-        let (geometry, transfer) = (&mut self.geometry, &mut self.transfer);
+        let (geometry, transfer, volume) = (&mut self.geometry, &mut self.transfer, &mut self.volume);
         match chunk.kind {
             // The table allows one header, and it was read before.
             Kind::Header => {}
@@ -86,6 +89,12 @@ impl Arrays {
             Kind::Albedo => transfer.albedo = array::read(chunk, from)?,
             Kind::Openness => transfer.openness = array::read(chunk, from)?,
             Kind::Picture => self.pictures.push(array::read(chunk, from)?),
+            Kind::Sheet => self.sheets.push(array::read(chunk, from)?),
+            Kind::VolumeNodes => volume.nodes = array::read(chunk, from)?,
+            Kind::VolumeValues => volume.values = array::read(chunk, from)?,
+            Kind::VolumePositions => volume.positions = array::read(chunk, from)?,
+            Kind::VolumeValidity => volume.validity = array::read(chunk, from)?,
+            Kind::VolumeDistances => volume.distances = array::read(chunk, from)?,
         }
         Ok(())
     }
@@ -98,6 +107,18 @@ impl Arrays {
                 format!("the header names {stated} textures, the file holds {found}"),
             ));
         }
+        let at = chunks[0].offset;
+        let maps = match header.maps {
+            Some(maps) => Some(maps.join(self.sheets, at)?),
+            None if self.sheets.is_empty() => None,
+            None => {
+                return Err(Error::invalid(at, "the file holds sheets of light maps that the header does not name"));
+            }
+        };
+        let volume = match header.volume {
+            Some(volume) => Some(volume.join(self.volume)),
+            None => self.volume.check_absent(at).map(|()| None)?,
+        };
         let pictures = header.textures.into_iter().zip(self.pictures);
         let texture = |(t, rgba): (crate::TextureHeader, _)| Texture {
             name: t.name,
@@ -119,8 +140,8 @@ impl Arrays {
             geometry: self.geometry,
             transfer: Transfer { bands: header.bands, channels: header.channels, ..self.transfer },
             textures: pictures.map(texture).collect(),
-            maps: None,
-            volume: None,
+            maps,
+            volume,
         })
     }
 }

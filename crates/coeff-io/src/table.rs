@@ -10,7 +10,7 @@ use std::io::{self, Read, Write};
 pub const MAGIC: [u8; 8] = *b"\x89PRT\r\n\x1a\n";
 
 /// Version of the format, apart from the version of the program.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Every chunk begins at a multiple of so many bytes, so that a mapped file can be used without copying.
 pub const ALIGNMENT: u64 = 16;
@@ -46,13 +46,25 @@ pub enum Kind {
     Albedo,
     /// `[vertex]` f32.
     Openness,
-    /// `[row][column][4]` u8; the only kind of which there may be several.
+    /// `[row][column][4]` u8, one per texture.
     Picture,
+    /// The bytes of `Layers`, one per sheet of a light map.
+    Sheet,
+    /// `[node][8]` u32: the cells of an irradiance volume.
+    VolumeNodes,
+    /// `[probe][function of 9][depth][channel]` f32.
+    VolumeValues,
+    /// `[probe][3]` f32.
+    VolumePositions,
+    /// `[probe]` f32.
+    VolumeValidity,
+    /// `[probe][row][column][2]` f32.
+    VolumeDistances,
 }
 
 impl Kind {
     /// Every kind with its tag, in file order.
-    const TAGS: [(Self, [u8; 4]); 12] = [
+    const TAGS: [(Self, [u8; 4]); 18] = [
         (Self::Header, *b"HEAD"),
         (Self::Positions, *b"POSN"),
         (Self::Normals, *b"NORM"),
@@ -65,7 +77,19 @@ impl Kind {
         (Self::Albedo, *b"ALBD"),
         (Self::Openness, *b"OPEN"),
         (Self::Picture, *b"PICT"),
+        (Self::Sheet, *b"MAPS"),
+        (Self::VolumeNodes, *b"VNOD"),
+        (Self::VolumeValues, *b"VVAL"),
+        (Self::VolumePositions, *b"VPOS"),
+        (Self::VolumeValidity, *b"VOKS"),
+        (Self::VolumeDistances, *b"VDIS"),
     ];
+
+    /// Whether a file may hold several, counted by [`Chunk::index`].
+    #[must_use]
+    pub fn repeats(self) -> bool {
+        matches!(self, Self::Picture | Self::Sheet)
+    }
 
     fn tag(self) -> [u8; 4] {
         Self::TAGS[self as usize].1
@@ -87,7 +111,7 @@ impl fmt::Display for Kind {
 pub struct Chunk {
     /// What it holds.
     pub kind: Kind,
-    /// Which picture; 0 for every other kind.
+    /// Which picture or sheet; 0 for every other kind.
     pub index: u32,
     /// Where it begins, bytes from the start of the file.
     pub offset: u64,
@@ -236,10 +260,13 @@ fn check_layout(chunks: &[Chunk], file_length: u64) -> Result<(), Error> {
     for (number, chunk) in chunks.iter().enumerate() {
         let at = (PRELUDE + ROW * number) as u64;
         let expected = match number.checked_sub(1).map(|before| &chunks[before]) {
-            Some(before) if before.kind == Kind::Picture => before.index.checked_add(1),
+            Some(before) if before.kind == chunk.kind => before.index.checked_add(1),
             _ => Some(0),
         };
-        let in_order = number == 0 || chunk.kind > chunks[number - 1].kind || chunk.kind == Kind::Picture;
+        let in_order = number == 0 || {
+            let before = chunks[number - 1].kind;
+            chunk.kind > before || (chunk.kind == before && chunk.kind.repeats())
+        };
         if !in_order || Some(chunk.index) != expected {
             return Err(Error::invalid(at, format!("chunk {number} ({} {}) is out of order", chunk.kind, chunk.index)));
         }

@@ -6,8 +6,8 @@ use crate::{AlphaMode, BandChoice, Camera, Error, Material, Prt, Texture, Textur
 /// Rounding that unit vectors and shares of 1 are allowed.
 const ROUNDING: f32 = 1e-3;
 
-/// Most columns or rows of a texture.
-const LARGEST_SIDE: u32 = 32_768;
+/// Most columns or rows of a texture or a sheet, and most cells of a volume along an axis.
+pub(crate) const LARGEST_SIDE: u32 = 32_768;
 
 /// Checks everything; `chunks` tell where in the file a flaw lies.
 ///
@@ -24,6 +24,12 @@ pub(crate) fn validate(prt: &Prt, chunks: &[Chunk]) -> Result<(), Error> {
     for (i, texture) in prt.textures.iter().enumerate() {
         check.texture(i, texture)?;
     }
+    if let Some(maps) = &prt.maps {
+        check.maps(maps, prt)?;
+    }
+    if let Some(volume) = &prt.volume {
+        check.volume(volume)?;
+    }
     check.header(!prt.cameras.is_empty(), || "there is no camera".into())?;
     for camera in &prt.cameras {
         check.camera(camera)?;
@@ -32,12 +38,18 @@ pub(crate) fn validate(prt: &Prt, chunks: &[Chunk]) -> Result<(), Error> {
 }
 
 /// Knows where each kind of chunk lies.
-struct Check<'a> {
+pub(crate) struct Check<'a> {
     chunks: &'a [Chunk],
 }
 
 impl Check<'_> {
-    fn require(&self, sound: bool, kind: Kind, byte: usize, what: impl FnOnce() -> String) -> Result<(), Error> {
+    pub(crate) fn require(
+        &self,
+        sound: bool,
+        kind: Kind,
+        byte: usize,
+        what: impl FnOnce() -> String,
+    ) -> Result<(), Error> {
         if sound {
             return Ok(());
         }
@@ -45,7 +57,13 @@ impl Check<'_> {
         Err(Error::invalid(chunk.map_or(0, |c| c.offset) + byte as u64, what()))
     }
 
-    fn header(&self, sound: bool, what: impl FnOnce() -> String) -> Result<(), Error> {
+    /// The error of a chunk of a kind that repeats.
+    pub(crate) fn require_part(&self, kind: Kind, index: usize, byte: usize, what: String) -> Result<(), Error> {
+        let chunk = self.chunks.iter().find(|chunk| chunk.kind == kind && chunk.index as usize == index);
+        Err(Error::invalid(chunk.map_or(0, |c| c.offset) + byte as u64, what))
+    }
+
+    pub(crate) fn header(&self, sound: bool, what: impl FnOnce() -> String) -> Result<(), Error> {
         self.require(sound, Kind::Header, 0, what)
     }
 
@@ -108,7 +126,7 @@ impl Check<'_> {
         self.each(Kind::Openness, &transfer.openness, share, "no openness between 0 and 1")
     }
 
-    fn each<T: std::fmt::Debug>(
+    pub(crate) fn each<T: std::fmt::Debug>(
         &self,
         kind: Kind,
         values: &[T],

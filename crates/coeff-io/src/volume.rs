@@ -2,6 +2,12 @@
 
 use crate::MapLight;
 
+/// Functions per probe: 3 bands.
+pub(crate) const FUNCTIONS: usize = 9;
+
+/// Most times that a cell may be split.
+pub(crate) const DEEPEST: u8 = 20;
+
 /// Cells in space with a probe at every corner, split finer where surfaces are near. \[N\] section 1.9.
 ///
 /// The number of cells along an axis is of the coarsest level; a cell may be split into eight, again and again.
@@ -30,7 +36,7 @@ pub struct Volume {
     /// `[probe][row][column][2]`: over the octahedral map of the sphere, mean distance and mean square distance to what is seen, metres,
     /// at most [`Volume::reach`].
     pub distances: Vec<f32>,
-    /// Texels along a side of the octahedral map.
+    /// Texels along a side of the octahedral map; 0 where no distances are told.
     pub resolution: u32,
     /// Longest distance that is told, metres.
     pub reach: f32,

@@ -1,7 +1,8 @@
 //! A [`Prt`] becomes bytes.
 
 use crate::table::{self, Kind};
-use crate::{Error, Header, Prt, array, replace, validate};
+use crate::volume_header::nodes_to_words;
+use crate::{Error, Header, Prt, Volume, array, replace, validate};
 use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
@@ -75,5 +76,19 @@ fn arrays(prt: &Prt) -> impl Iterator<Item = (Kind, u32, Cow<'_, [u8]>)> {
     ];
     let pictures = prt.textures.iter().enumerate();
     let pictures = pictures.map(|(i, texture)| (Kind::Picture, i as u32, array::bytes(&texture.rgba)));
-    single.into_iter().map(|(kind, bytes)| (kind, 0, bytes)).chain(pictures)
+    let sheets = prt.maps.iter().flat_map(|maps| &maps.sheets).enumerate();
+    let sheets = sheets.map(|(i, sheet)| (Kind::Sheet, i as u32, Cow::Borrowed(sheet.layers.bytes.as_slice())));
+    let single = single.into_iter().map(|(kind, bytes)| (kind, 0, bytes));
+    single.chain(pictures).chain(sheets).chain(prt.volume.iter().flat_map(volume_arrays))
+}
+
+fn volume_arrays(volume: &Volume) -> [(Kind, u32, Cow<'_, [u8]>); 5] {
+    let nodes = nodes_to_words(&volume.nodes);
+    [
+        (Kind::VolumeNodes, 0, Cow::Owned(array::bytes(&nodes).into_owned())),
+        (Kind::VolumeValues, 0, array::bytes(&volume.values)),
+        (Kind::VolumePositions, 0, array::bytes(&volume.positions)),
+        (Kind::VolumeValidity, 0, array::bytes(&volume.validity)),
+        (Kind::VolumeDistances, 0, array::bytes(&volume.distances)),
+    ]
 }

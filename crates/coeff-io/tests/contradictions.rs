@@ -2,8 +2,9 @@
 
 mod sample;
 
-use coeff_io::{BandChoice, Error, Prt, Quality, Refine};
+use coeff_io::{BandChoice, Error, MapLight, Maps, Node, Prt, Quality, Refine, Volume};
 use sample::sample;
+use sh_math::hemisphere::Basis;
 
 /// A name and a change that breaks one rule of `docs/format.md`.
 type Break = (&'static str, fn(&mut Prt));
@@ -63,7 +64,70 @@ const BREAKS: &[Break] = &[
     ("a worst receiver that is not there", |p| p.achieved.worst_receiver = 7),
     ("an error that is no number", |p| p.achieved.error[1] = f32::NAN),
     ("an error to reach that is no number", |p| p.settings.quality = Quality::Error(f32::NAN)),
+    ("maps of a mesh too few", |p| _ = maps(p).sheet_of_mesh.pop()),
+    ("a mesh on a sheet that is not there", |p| maps(p).sheet_of_mesh[0] = Some(5)),
+    ("maps without coordinates", |p| p.geometry.uv1.clear()),
+    ("maps of no bands", |p| maps(p).light = MapLight::Relightable { bands: 0 }),
+    ("maps of bands that overflow", |p| maps(p).light = MapLight::Relightable { bands: 1 << 16 }),
+    ("maps of another basis", |p| maps(p).basis = Basis::H6),
+    ("a sheet without width", |p| maps(p).sheets[0].layers.width = 0),
+    ("a sheet too wide", |p| maps(p).sheets[0].layers.width = 32_769),
+    ("a sheet whose sizes overflow", |p| {
+        let layers = &mut maps(p).sheets[0].layers;
+        (layers.width, layers.height, layers.count) = (1 << 15, 1 << 15, u32::MAX);
+    }),
+    ("a sheet of two channels", |p| maps(p).sheets[0].layers.channels = 2),
+    ("a sheet with a byte too few", |p| _ = maps(p).sheets[1].layers.bytes.pop()),
+    ("a sheet without bytes", |p| maps(p).sheets[1].layers.bytes.clear()),
+    ("a texel that is no number", |p| maps(p).sheets[0].layers.bytes[8..12].copy_from_slice(&f32::NAN.to_le_bytes())),
+    ("eight bits without charts", |p| maps(p).sheets[1].layers.bytes.truncate(3)),
+    ("eight bits of more charts than there are", |p| maps(p).sheets[1].layers.bytes[..4].fill(0xFF)),
+    ("eight bits on no curve", |p| maps(p).sheets[1].layers.bytes[5] = 2),
+    ("eight bits of no range", |p| maps(p).sheets[1].layers.bytes[7..11].copy_from_slice(&f32::NAN.to_le_bytes())),
+    ("eight bits of a chart that is not there", |p| maps(p).sheets[1].layers.bytes[55] = 2),
+    ("an infinite half", |p| maps(p).sheets[2].layers.bytes[2..4].copy_from_slice(&[0, 0x7C])),
+    ("a block too few", |p| maps(p).sheets[3].layers.bytes.truncate(3 + 24 + 40)),
+    ("blocks on no curve", |p| maps(p).sheets[3].layers.bytes[2] = 9),
+    ("blocks of no range", |p| maps(p).sheets[4].layers.bytes[3..7].copy_from_slice(&f32::INFINITY.to_le_bytes())),
+    ("blocks whose sizes overflow", |p| maps(p).sheets[4].layers.count = u32::MAX),
+    ("a volume of two channels", |p| volume(p).channels = 2),
+    ("a volume of bands that overflow", |p| volume(p).light = MapLight::Relightable { bands: u32::MAX }),
+    ("a volume without place", |p| volume(p).origin[1] = f32::NAN),
+    ("a volume without size", |p| volume(p).spacing[2] = 0.0),
+    ("a volume that ends nowhere", |p| volume(p).spacing[1] = f32::MAX),
+    ("a volume without cells", |p| volume(p).cells[0] = 0),
+    ("a volume of more cells than it has", |p| volume(p).cells = [4, 4, 4]),
+    ("a volume of cells that overflow", |p| volume(p).cells = [u32::MAX; 3]),
+    ("a volume with a cell too few", |p| _ = volume(p).nodes.pop()),
+    ("a cell that is its own part", |p| volume(p).nodes[0] = Node::Split(0)),
+    ("a cell split within eight", |p| volume(p).nodes[0] = Node::Split(3)),
+    ("parts beyond the end", |p| volume(p).nodes[0] = Node::Split(10)),
+    ("parts that end beyond", |p| volume(p).nodes[0] = Node::Split(u32::MAX)),
+    ("parts of two cells", |p| volume(p).nodes[1] = Node::Split(2)),
+    ("parts of none", |p| volume(p).nodes[0] = Node::Leaf([0; 8])),
+    ("a cycle", |p| volume(p).nodes[5] = Node::Split(2)),
+    ("a probe that is not there", |p| volume(p).nodes[3] = Node::Leaf([0, 1, 2, 3, 4, 5, 6, 8])),
+    ("a probe that is a mark", |p| volume(p).nodes[3] = Node::Leaf([u32::MAX, 9, 0, 0, 0, 0, 0, 1])),
+    ("no probes", |p| volume(p).positions.clear()),
+    ("a probe too few", |p| _ = volume(p).positions.pop()),
+    ("a validity too few", |p| _ = volume(p).validity.pop()),
+    ("a validity of 2", |p| volume(p).validity[0] = 2.0),
+    ("a coefficient too few", |p| _ = volume(p).values.pop()),
+    ("a coefficient that is no number", |p| volume(p).values[7] = f32::NAN),
+    ("a probe that is nowhere", |p| volume(p).positions[1][2] = f32::INFINITY),
+    ("a distance too few", |p| _ = volume(p).distances.pop()),
+    ("a negative distance", |p| volume(p).distances[3] = -1.0),
+    ("a reach that is no number", |p| volume(p).reach = f32::NAN),
+    ("maps of which there are none", |p| volume(p).resolution = u32::MAX),
 ];
+
+fn maps(prt: &mut Prt) -> &mut Maps {
+    prt.maps.as_mut().unwrap()
+}
+
+fn volume(prt: &mut Prt) -> &mut Volume {
+    prt.volume.as_mut().unwrap()
+}
 
 #[test]
 fn contradictions_are_not_written() {
@@ -83,14 +147,15 @@ fn contradictions_are_not_written_can_fail() {
 #[test]
 fn contradictions_are_not_read() {
     let mut bytes = sample().to_bytes().unwrap();
-    let row = (0..13).map(|i| 32 + 32 * i).find(|row| &bytes[*row..*row + 4] == b"TRIS").unwrap();
+    let count = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let row = (0..count).map(|i| 32 + 32 * i).find(|row| &bytes[*row..*row + 4] == b"TRIS").unwrap();
     let offset = u64::from_le_bytes(bytes[row + 8..row + 16].try_into().unwrap());
     let corner = offset as usize + 12;
     bytes[corner] = 200;
     let sum = crc32fast::hash(&bytes[offset as usize..offset as usize + 36]);
     bytes[row + 24..row + 28].copy_from_slice(&sum.to_le_bytes());
     bytes[28..32].fill(0);
-    let sum = crc32fast::hash(&bytes[..32 + 32 * 13]);
+    let sum = crc32fast::hash(&bytes[..32 + 32 * count]);
     bytes[28..32].copy_from_slice(&sum.to_le_bytes());
     let error = Prt::from_bytes(&bytes).unwrap_err();
     assert!(matches!(error, Error::Invalid { at, .. } if at == corner as u64), "{error}");

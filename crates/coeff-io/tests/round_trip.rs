@@ -61,6 +61,7 @@ fn absent_parts_take_no_chunk() {
     prt.geometry.uv1.clear();
     prt.geometry.colors.clear();
     prt.textures.clear();
+    (prt.maps, prt.volume) = (None, None);
     prt.materials[0] = prt.materials[1].clone();
     prt.plan.channels = 1;
     let values = prt.transfer.values.iter().step_by(3).copied().collect();
@@ -72,6 +73,24 @@ fn absent_parts_take_no_chunk() {
     let kinds: Vec<Kind> = inspect(&path).unwrap().chunks.iter().map(|chunk| chunk.kind).collect();
     let expected = [Kind::Header, Kind::Positions, Kind::Normals, Kind::Triangles, Kind::Transfer, Kind::Albedo];
     assert_eq!(kinds, expected);
+}
+
+/// Beside the tags of two options, an absent map and volume take nothing; present ones take what their chunks hold.
+#[test]
+fn absent_maps_and_volumes_take_two_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = |prt: &Prt| {
+        let path = folder.path().join("a.prt");
+        prt.write(&path).unwrap();
+        inspect(&path).unwrap().chunks[0].length
+    };
+    let with = sample();
+    let maps = Prt { maps: None, ..with.clone() };
+    let neither = Prt { maps: None, volume: None, ..with.clone() };
+    // origin, spacing, cells, light, channels, resolution, reach; basis, light, five sheets, the sheets of two meshes.
+    let (volume, map) = (12 + 12 + 12 + 8 + 4 + 4 + 4, 8 + 3 + 4 + 8 + 11 + 4 + 8 + 5 * 20 + 8 + 5 + 1);
+    assert_eq!(header(&maps) - header(&neither), volume);
+    assert_eq!(header(&with) - header(&maps), map);
 }
 
 #[test]

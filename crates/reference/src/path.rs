@@ -28,6 +28,9 @@ pub(crate) fn outgoing(world: &World, light: &Light, start: Surface, max_bounces
 
         let local = square_to_cosine_concentric(rng.next_square());
         let direction = Frame::from_normal(surface.normal).to_world(local).normalize();
+        if surface.is_below(direction) {
+            break;
+        }
         let step = if max_bounces == Some(bounce) {
             last_step(world, surface.origin, direction)
         } else {
@@ -77,7 +80,7 @@ fn from_lamps(world: &World, light: &Light, surface: &Surface, rng: &mut Rng) ->
     for lamp in &light.lamps {
         let (direction, flux) = lamp.sample(rng.next_square());
         let cosine = surface.normal.dot(direction);
-        if cosine > 0.0 && !world.occluded(surface.origin, direction) {
+        if cosine > 0.0 && !surface.is_below(direction) && !world.occluded(surface.origin, direction) {
             sum += flux * (cosine * FRAC_1_PI);
         }
     }
@@ -90,7 +93,7 @@ fn from_image(world: &World, light: &Light, surface: &Surface, rng: &mut Rng) ->
         return Vec3::ZERO;
     };
     let cosine = surface.normal.dot(sample.direction);
-    if cosine <= 0.0 || world.occluded(surface.origin, sample.direction) {
+    if cosine <= 0.0 || surface.is_below(sample.direction) || world.occluded(surface.origin, sample.direction) {
         return Vec3::ZERO;
     }
     // radiance * (cosine / pi) / pdf * pdf / (pdf + cosine pdf)

@@ -23,7 +23,7 @@ pub struct Receiver {
 impl Receiver {
     fn surface(&self) -> Surface {
         let origin = offset_origin(self.position, self.geometric_normal);
-        Surface { origin, normal: self.normal, albedo: self.albedo }
+        Surface { origin, normal: self.normal, facing: self.normal, albedo: self.albedo }
     }
 }
 

@@ -22,6 +22,8 @@ struct Layer<'a> {
     parts: Vec<[u32; 2]>,
     /// Unit normal of each traced triangle, on the side of its counter-clockwise winding.
     normals: Vec<Vec3>,
+    /// Whether normal maps bend shading normals.
+    bent: bool,
 }
 
 /// One side of a diffuse surface at a point, as far as light needs to know it.
@@ -29,10 +31,19 @@ struct Layer<'a> {
 pub(crate) struct Surface {
     /// Just off the surface on this side: where rays start.
     pub(crate) origin: Vec3,
-    /// Unit shading normal on this side.
+    /// Unit shading normal on this side, from which the cosine counts.
     pub(crate) normal: Vec3,
+    /// The same before a normal map bent it: light comes from above its plane only.
+    pub(crate) facing: Vec3,
     /// Diffuse, RGB in [0, 1].
     pub(crate) albedo: Vec3,
+}
+
+impl Surface {
+    /// Whether light from a direction would have to come through the surface itself: a bent normal turns towards some.
+    pub(crate) fn is_below(&self, direction: Vec3) -> bool {
+        self.facing != self.normal && self.facing.dot(direction) <= 0.0
+    }
 }
 
 /// What a camera ray shows: a lit surface and its own emission.
@@ -48,8 +59,14 @@ impl<'a> World<'a> {
     /// Builds the trees; the scene stays where it is.
     #[must_use]
     pub fn new(scene: &'a Scene) -> Self {
-        let solid = Layer::new(scene, Material::blocks_rays);
-        let veils = Layer::new(scene, |material| !material.blocks_rays());
+        Self::with_normal_maps(scene, false)
+    }
+
+    /// [`World::new`] with diffuse shading by the normals of normal maps, or without.
+    #[must_use]
+    pub fn with_normal_maps(scene: &'a Scene, bent: bool) -> Self {
+        let solid = Layer::new(scene, bent, Material::blocks_rays);
+        let veils = Layer::new(scene, bent, |material| !material.blocks_rays());
         Self { solid, veils: (!veils.parts.is_empty()).then_some(veils) }
     }
 
@@ -83,7 +100,7 @@ impl<'a> World<'a> {
 }
 
 impl<'a> Layer<'a> {
-    fn new(scene: &'a Scene, belongs: impl Fn(&Material) -> bool) -> Self {
+    fn new(scene: &'a Scene, bent: bool, belongs: impl Fn(&Material) -> bool) -> Self {
         let (mut positions, mut triangles, mut masked) = (Vec::new(), Vec::new(), Vec::new());
         let (mut parts, mut normals) = (Vec::new(), Vec::new());
         for (m, mesh) in scene.meshes.iter().enumerate().filter(|(m, _)| belongs(scene.material(*m))) {
@@ -96,7 +113,7 @@ impl<'a> Layer<'a> {
                 masked.push(scene.material(m).is_masked());
             }
         }
-        Self { scene, tracer: Tracer::build(&positions, &triangles, &masked), parts, normals }
+        Self { scene, tracer: Tracer::build(&positions, &triangles, &masked), parts, normals, bent }
     }
 
     fn part(&self, triangle: u32) -> (usize, usize) {
@@ -142,10 +159,13 @@ impl<'a> Layer<'a> {
         let mesh = &self.scene.meshes[m];
         let side = self.normals[hit.triangle as usize] * if hit.front { 1.0 } else { -1.0 };
         let corners = mesh.triangles[triangle].map(|corner| mesh.positions[corner as usize]);
-        let normal = mesh.normal(triangle, hit.u, hit.v);
+        let facing = mesh.normal(triangle, hit.u, hit.v);
+        let normal = if self.bent { self.scene.bent_normal(m, triangle, hit.u, hit.v) } else { facing };
+        let turn = if facing.dot(side) < 0.0 { -1.0 } else { 1.0 };
         Surface {
             origin: offset_origin_on(corners, mesh.position(triangle, hit.u, hit.v), side),
-            normal: if normal.dot(side) < 0.0 { -normal } else { normal },
+            normal: normal * turn,
+            facing: facing * turn,
             albedo: self.scene.albedo(m, triangle, hit.u, hit.v),
         }
     }

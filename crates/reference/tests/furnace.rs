@@ -52,7 +52,9 @@ fn white_surfaces_vanish_in_every_scene() {
         let estimates = trace(&painted(name, 1.0), 24, 1000, None);
         // Floors go on under blocks and columns, where no light comes in: exactly none.
         let (lit, sealed): (Vec<_>, Vec<_>) = estimates.into_iter().partition(|e| e.mean[0] != 0.0);
-        assert!(sealed.len() <= 4, "{name}: {} receivers in the dark", sealed.len());
+        // A quarter of all surfaces are those of the sealed one of two rooms.
+        let most = if *name == "two-rooms" { 12 } else { 4 };
+        assert!(sealed.len() <= most, "{name}: {} receivers in the dark", sealed.len());
         check(&lit, 1.0).unwrap_or_else(|e| panic!("{name}: {e}"));
     }
 }

@@ -42,6 +42,33 @@ fn fronts_are_lit_and_backs_let_the_camera_through() {
     testkit::assert_close!(seen(|m| m.double_sided = true, -3.0), 0.5 * SKY, 0.0, 0.01, "both sides");
 }
 
+/// A map that bends every normal by an angle takes away the share of the sky that a tilted surface turns from, and no light comes
+/// through the surface from below: `(1 + cos) / 2` of the sky are left. With light from below it would be all.
+#[test]
+fn normal_maps_bend_the_light() {
+    let texel = [204, 128, 230, 255];
+    let mut scene = plane(|m| {
+        m.normal_texture = Some(scene::TextureSlot { texture: 0, uv_set: 0, transform: glam::Affine2::IDENTITY });
+    });
+    let wrap = [scene::Wrap::Repeat; 2];
+    scene.textures = vec![scene::Texture { name: "map".into(), width: 1, height: 1, rgba: vec![texel], wrap }];
+    for mesh in &mut scene.meshes {
+        mesh.tangents = vec![Vec3::X.extend(1.0); mesh.positions.len()];
+        mesh.uv0 = vec![glam::Vec2::ZERO; mesh.positions.len()];
+    }
+    let bent = Vec3::from_array([texel[0], texel[1], texel[2]].map(|x: u8| f32::from(x) / 127.5 - 1.0)).normalize();
+    let light = Light::new(&Environment::constant([SKY; 3]));
+    let settings = Settings { samples: 256, ..SETTINGS };
+    let drawn = |on: bool| {
+        let world = World::with_normal_maps(&scene, on);
+        let camera = view(Vec3::Y * 3.0);
+        mean(&render(&world, &light, &camera, SIZE, &settings, &|_| ControlFlow::Continue(())).expect("not stopped"))
+    };
+    let expected = f64::from(0.5 * SKY * 0.5 * (1.0 + bent.z));
+    testkit::assert_close!(drawn(true), expected, 0.0, 0.005, "bent");
+    assert!((drawn(false) - expected).abs() > 0.05, "without the map it must show");
+}
+
 #[test]
 fn emission_is_added() {
     testkit::assert_close!(seen(|m| m.emissive = Vec3::splat(3.0), 3.0), 0.5 * SKY + 3.0, 0.0, 0.01);

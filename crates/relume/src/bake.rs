@@ -1,6 +1,7 @@
 //! `relume bake`: a scene becomes a `.prt` file.
 
 use crate::console::{Console, Progress};
+use crate::extras::ExtraOptions;
 use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
@@ -19,6 +20,8 @@ Examples:
   relume bake atrium.glb -o atrium.prt --bands auto:8 --probe evening.hdr
   relume bake scan.obj -o scan.prt --rays 256 --bounces 0 --memory 2G
   relume bake city.glb -o city.prt --time 10m
+  relume bake house.glb -o house.prt --storage texture --texels 1024 --basis modified-h6
+  relume bake house.glb -o house.prt --storage texture --probe noon.hdr --light fixed --window auto --encoding bc6h
 
 Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest result so far stays.";
 
@@ -39,6 +42,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "PROBE", value_parser = source::probe)]
     probe: Option<ProbeSource>,
     #[command(flatten)]
+    extras: ExtraOptions,
+    #[command(flatten)]
     read: ReadOptions,
 }
 
@@ -47,15 +52,19 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let settings =
         Settings { time: options.time, ..options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))? };
     output::check(&options.output)?;
-    let scene = options.scene.load(console)?;
+    let mut scene = options.scene.load(console)?;
+    let probe = options.probe.as_ref().map(|probe| (probe, &options.read));
+    let in_texture = options.bake.in_texture();
+    let extras = options.extras.of(&mut scene, in_texture, settings.bands, probe, console)?;
     interrupt::watch()?;
     let began = Instant::now();
     let path = &options.output;
     let write = |prt: &Prt| prt.write(path).with_context(|| format!("cannot write {}", path.display()));
     let prt = match settings.time {
-        Some(seconds) => timed::bake(&scene, &settings, Duration::from_secs_f32(seconds), &write, console)?,
+        Some(seconds) => timed::bake(&scene, &settings, &extras, Duration::from_secs_f32(seconds), &write, console)?,
         None => {
-            let prt = bake::bake(&scene, &settings, &watched(&console.progress(), None)).map_err(fault)?;
+            let prt =
+                bake::bake_with(&scene, &settings, &extras, &watched(&console.progress(), None)).map_err(fault)?;
             write(&prt)?;
             prt
         }

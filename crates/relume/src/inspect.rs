@@ -2,6 +2,7 @@
 
 use crate::columns::{Columns, Side, bytes, count};
 use crate::console::Console;
+use crate::inspect_maps::{maps_json, maps_text, volume_json, volume_text};
 use anyhow::{Context, Result, bail};
 use coeff_io::{Chunk, EffectCost, Inspection, Kind};
 use serde_json::json;
@@ -68,12 +69,14 @@ fn as_json(seen: &Inspection, sums: &[u32]) -> String {
         "vertices": vertices(seen),
         "triangles": elements(seen, Kind::Triangles, 12),
         "chunks": seen.chunks.iter().zip(sums).map(chunk).collect::<Vec<_>>(),
+        "maps": seen.header.maps.as_ref().map(|maps| maps_json(maps, seen)),
+        "volume": seen.header.volume.as_ref().map(|volume| volume_json(volume, seen)),
         "header": seen.header,
     });
     format!("{value:#}")
 }
 
-fn elements(seen: &Inspection, kind: Kind, size: u64) -> u64 {
+pub(crate) fn elements(seen: &Inspection, kind: Kind, size: u64) -> u64 {
     seen.chunks.iter().filter(|chunk| chunk.kind == kind).map(|chunk| chunk.length / size).sum()
 }
 
@@ -88,11 +91,8 @@ fn as_text(seen: &Inspection, sums: &[u32]) -> Result<String> {
     write_effects(&mut text, seen);
     writeln!(text, "\nchunks           offset        bytes  crc32")?;
     for (chunk, sum) in seen.chunks.iter().zip(sums) {
-        let name = if chunk.kind == Kind::Picture {
-            format!("{} {}", chunk.kind, chunk.index)
-        } else {
-            chunk.kind.to_string()
-        };
+        let name =
+            if chunk.kind.repeats() { format!("{} {}", chunk.kind, chunk.index) } else { chunk.kind.to_string() };
         let state = if chunk.crc32 == *sum { "" } else { "  DAMAGED" };
         writeln!(text, "  {name:<9} {:>12} {:>12}  {:08x}{state}", chunk.offset, chunk.length, chunk.crc32)?;
     }
@@ -130,6 +130,12 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
     row("surfaces", format!("{materials} materials, {textures} textures"))?;
     row("cameras", header.cameras.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "))?;
     row("transfer", format!("{} bands, {} channel(s)", header.bands, header.channels))?;
+    if let Some(maps) = &header.maps {
+        row("light maps", maps_text(maps, seen))?;
+    }
+    if let Some(volume) = &header.volume {
+        row("volume", volume_text(volume, seen))?;
+    }
     row(
         "asked for",
         format!(

@@ -1,66 +1,164 @@
-//! How light maps are drawn: in which basis, with how many functions, with or without the surfaces' colours.
+//! The options of light maps, and the sheets that they lie in.
 
 use crate::console::Console;
-use coeff_io::{MapLight, Prt};
+use anyhow::Result;
+use bake::{MapSettings, SheetSettings};
+use coeff_io::Encoding;
+use scene::Scene;
+use scene::lightmap::{self, Density, FaultKind, Unwrap};
 use sh_math::hemisphere::Basis;
 
-/// The options of light maps.
-#[derive(Debug, clap::Args)]
+/// Share of a sheet that unwrapped surfaces are taken to fill, to foresee its size.
+const FILLED: f64 = 0.6;
+/// Fewest texels along a side of a sheet.
+const SMALLEST: u32 = 16;
+
+/// How light maps are baked, as typed.
+#[derive(Debug, Clone, clap::Args)]
 pub(crate) struct MapOptions {
-    /// The basis that light maps are drawn in, such as modified-h6, sh9, hl2, hsh9, makhotkin9 or zernike6; their own by default.
-    #[arg(long, value_name = "NAME", value_parser = basis)]
-    pub(crate) basis: Option<Basis>,
-    /// Draws only the first N functions of the basis: modified-h6 has 6, 4 and 1, others what is a best fit.
-    #[arg(long, value_name = "N")]
-    pub(crate) functions: Option<u32>,
-    /// The surfaces' own colours; off shows the light alone.
-    #[arg(long, value_enum, default_value_t = Albedo::On)]
-    albedo: Albedo,
+    /// Texels along a side of the sheets with --storage texture: about so many times as many in all, shared by area.
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
+    texels: u32,
+    /// The functions over normals that light maps are kept in: sh4, sh9, hl2, hsh4, hsh9, makhotkin4, makhotkin9, zernike3, zernike6, h4,
+    /// h6, modified-h1 (an ordinary light map), modified-h4 or modified-h6.
+    #[arg(long, value_name = "NAME", default_value = "modified-h6", value_parser = basis)]
+    basis: Basis,
+    /// How light maps are held in the file.
+    #[arg(long, value_enum, default_value_t = EncodingName::F16)]
+    encoding: EncodingName,
+    /// Unwraps all surfaces, whatever light-map coordinates the scene brings.
+    #[arg(long)]
+    unwrap: bool,
+    /// Leaves the light of the two sides of a seam as it is.
+    #[arg(long)]
+    no_stitch: bool,
+    /// Free texels around each chart that is unwrapped, and rings that are filled around each chart.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=32))]
+    padding: u32,
 }
 
+/// The encodings by the names that are typed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Albedo {
-    /// As the materials have them.
-    On,
-    /// White.
-    Off,
+enum EncodingName {
+    /// Four bytes a number.
+    F32,
+    /// Two bytes a number.
+    F16,
+    /// One byte, with a range for each chart.
+    U8,
+    /// BC6H blocks: a byte for three numbers.
+    Bc6h,
+    /// BC1 blocks: half a byte for three numbers.
+    Bc1,
 }
 
-impl MapOptions {
-    /// Whether surfaces have their own colours.
-    pub(crate) fn albedo(&self) -> bool {
-        self.albedo == Albedo::On
+impl EncodingName {
+    fn encoding(self) -> Encoding {
+        match self {
+            Self::F32 => Encoding::F32,
+            Self::F16 => Encoding::F16,
+            Self::U8 => Encoding::U8,
+            Self::Bc6h => Encoding::Bc6h,
+            Self::Bc1 => Encoding::Bc1,
+        }
     }
 }
 
-/// Parses the name of a basis, hyphens and capitals as one likes.
+/// Parses the name of a basis.
 pub(crate) fn basis(text: &str) -> Result<Basis, String> {
     Basis::named(text).ok_or_else(|| {
         let names = Basis::ALL.map(|basis| basis.name().to_lowercase().replace(' ', "-"));
-        format!("there is no basis '{text}'; there are {}", names.join(", "))
+        format!("'{text}' is no basis: use one of {}", names.join(", "))
     })
 }
 
-/// Tells where the maps of a file hold the light of another probe than the one that is shown.
-pub(crate) fn tell(prt: &Prt, shown: &str, console: &Console) {
-    if let Some(MapLight::Fixed { probe, .. }) = prt.maps.as_ref().map(|maps| &maps.light)
-        && probe != shown
-    {
-        console.notice(&format!(
-            "the light maps hold the light of {probe}; {shown} is in the sky, in reflections and where there are no maps"
-        ));
+impl MapOptions {
+    /// The settings for a scene, whose surfaces are unwrapped where their own coordinates do not serve.
+    pub(crate) fn settings(&self, scene: &mut Scene, console: &Console) -> Result<MapSettings> {
+        let sheets = match self.own(scene, console) {
+            Some(sheets) => sheets,
+            None => self.unwrapped(scene, console)?,
+        };
+        for sheet in &sheets {
+            let kind = if sheet.directional { self.basis.name() } else { "plain light" };
+            console.detail(&format!(
+                "sheet of {} x {} texels, {} meshes, {kind}",
+                sheet.width,
+                sheet.height,
+                sheet.meshes.len()
+            ));
+        }
+        Ok(MapSettings {
+            basis: self.basis,
+            sheets,
+            stitch: !self.no_stitch,
+            dilation: self.padding.max(1),
+            encoding: self.encoding.encoding(),
+        })
+    }
+
+    /// The sheets that the coordinates of the scene make: one for all meshes or one for each, whichever has no faults.
+    fn own(&self, scene: &Scene, console: &Console) -> Option<Vec<SheetSettings>> {
+        let meshes = mapped(scene);
+        if self.unwrap || meshes.iter().any(|&mesh| scene.meshes[mesh].uv1.is_empty()) {
+            return None;
+        }
+        let serves = |sheet: &[usize]| lightmap::faults(scene, sheet).iter().all(|fault| fault.kind == FaultKind::Flat);
+        if serves(&meshes) {
+            return Some(vec![self.sheet(scene, meshes, [self.texels; 2])]);
+        }
+        if meshes.iter().all(|&mesh| serves(&[mesh])) {
+            let all: f64 = meshes.iter().map(|&mesh| area(scene, mesh)).sum();
+            let side = |mesh: usize| {
+                let side = f64::from(self.texels) * (area(scene, mesh) / all).sqrt();
+                (side.round() as u32).clamp(SMALLEST, self.texels)
+            };
+            return Some(meshes.iter().map(|&mesh| self.sheet(scene, vec![mesh], [side(mesh); 2])).collect());
+        }
+        console
+            .notice("the light-map coordinates of the scene do not serve (see relume uv): its surfaces are unwrapped");
+        None
+    }
+
+    /// Sheets of the program's own: one for what has normal maps and one for the rest, as dense.
+    fn unwrapped(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
+        let (bent, plain): (Vec<usize>, Vec<usize>) = mapped(scene).into_iter().partition(|&mesh| is_bent(scene, mesh));
+        let groups: Vec<Vec<usize>> = [bent, plain].into_iter().filter(|group| !group.is_empty()).collect();
+        let all: f64 = groups.iter().flatten().map(|&mesh| area(scene, mesh)).sum();
+        let density = f64::from(self.texels) * (FILLED / all.max(f64::MIN_POSITIVE)).sqrt();
+        let mut sheets = Vec::new();
+        for group in groups {
+            let density = match sheets.is_empty() && group.len() == mapped(scene).len() {
+                true => Density::Side(self.texels),
+                false => Density::PerMetre(density as f32),
+            };
+            let progress = console.progress();
+            let options = Unwrap { density, padding: self.padding };
+            let atlas =
+                lightmap::unwrap(scene, &group, &options, &|stage, done, total| progress.set(stage, done, total))?;
+            drop(progress);
+            console.detail(&format!("{} charts, {:.0} % of their sheet filled", atlas.charts, 100.0 * atlas.filled));
+            sheets.push(self.sheet(scene, group, [atlas.width, atlas.height]));
+        }
+        Ok(sheets)
+    }
+
+    fn sheet(&self, scene: &Scene, meshes: Vec<usize>, [width, height]: [u32; 2]) -> SheetSettings {
+        let directional = self.basis != Basis::ModifiedH1 && meshes.iter().any(|&mesh| is_bent(scene, mesh));
+        SheetSettings { meshes, width, height, directional }
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Meshes that get light maps: surfaces that stop light. Others are drawn by their vertices.
+fn mapped(scene: &Scene) -> Vec<usize> {
+    (0..scene.meshes.len()).filter(|&mesh| scene.material(mesh).blocks_rays()).collect()
+}
 
-    #[test]
-    fn words_become_bases() {
-        assert_eq!(basis("Modified-H6"), Ok(Basis::ModifiedH6));
-        assert_eq!(basis("hl2"), Ok(Basis::Hl2));
-        let refused = basis("h5").expect_err("there is no such basis");
-        assert!(refused.contains("modified-h-6") && refused.contains("sh-9"), "{refused}");
-    }
+fn is_bent(scene: &Scene, mesh: usize) -> bool {
+    scene.material(mesh).normal_texture.is_some() && !scene.meshes[mesh].tangents.is_empty()
+}
+
+fn area(scene: &Scene, mesh: usize) -> f64 {
+    let mesh = &scene.meshes[mesh];
+    (0..mesh.triangles.len()).map(|triangle| mesh.area(triangle)).sum()
 }

@@ -45,6 +45,9 @@ pub(crate) struct Options {
     /// What is done against ringing of the light of few bands, as `render` does it.
     #[arg(long, value_enum, default_value_t = Window::None)]
     window: Window,
+    /// Lets normal maps bend the normals that diffuse light is taken by, as light maps do.
+    #[arg(long)]
+    normal_maps: bool,
     /// How often light may bounce: a number, or auto for until paths end by themselves.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = settings::bounces)]
     bounces: Bounces,
@@ -97,10 +100,17 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let picture = {
         let progress = console.progress();
         let rows = options.size.height;
-        reference::render(&World::new(&scene), &light, &camera, [options.size.width, rows], &settings, &|share| {
-            progress.set("rows", (share * rows as f32).round() as u64, u64::from(rows));
-            interrupt::flow()
-        })
+        reference::render(
+            &World::with_normal_maps(&scene, options.normal_maps),
+            &light,
+            &camera,
+            [options.size.width, rows],
+            &settings,
+            &|share| {
+                progress.set("rows", (share * rows as f32).round() as u64, u64::from(rows));
+                interrupt::flow()
+            },
+        )
     };
     let mut picture = picture.context("the reference was cancelled; no file was written")?;
     let noise = noise(&picture);

@@ -3,7 +3,7 @@
 use crate::console::Console;
 use crate::draw::{Backend, Drawer, Window};
 use crate::lens::{self, Lens};
-use crate::maps::{self, MapOptions};
+use crate::look::{self, LookOptions};
 use crate::output;
 use crate::picture::{self, DisplayOptions, Size, Target};
 use crate::source::{self, ProbeOptions};
@@ -63,7 +63,7 @@ pub(crate) struct Options {
     #[arg(long, value_enum, default_value_t = Background::Sky)]
     background: Background,
     #[command(flatten)]
-    maps: MapOptions,
+    look: LookOptions,
     /// Draws N pictures, the light turned by 360/N degrees from one to the next.
     #[arg(long, value_name = "N")]
     frames: Option<NonZeroU32>,
@@ -90,16 +90,16 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         bloom: options.bloom,
         supersample: options.supersample,
         sky: options.background == Background::Sky,
-        albedo: options.maps.albedo(),
-        basis: options.maps.basis,
-        functions: options.maps.functions,
+        albedo: options.look.albedo(),
+        basis: options.look.basis,
+        functions: options.look.functions,
     };
     // Of a turn the second frame, too, before anything is written.
     let count = options.frames.map_or(1, NonZeroU32::get);
     for frame in [frame.clone(), turned(&frame, 1, count)] {
         frame.check_for(&prt).map_err(|error| crate::usage::Usage(error.to_string()))?;
     }
-    maps::tell(&prt, &options.probe.name(), console);
+    look::tell(&prt, &options.probe.name(), console);
     let environment = options.probe.load(console)?;
     let mut drawer = Drawer::open(options.backend, &prt, &environment, options.window, console)?;
     match options.frames {

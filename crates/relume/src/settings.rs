@@ -47,11 +47,11 @@ pub(crate) struct BakeOptions {
 /// Where coefficients are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Storage {
-    /// What suits the scene; at the vertices for now.
+    /// At the vertices.
     Auto,
     /// At the vertices.
     Vertex,
-    /// In textures (not available yet).
+    /// At the vertices, and in light maps that answer to normal maps.
     Texture,
 }
 
@@ -89,6 +89,11 @@ impl std::fmt::Display for BandsOption {
 }
 
 impl BakeOptions {
+    /// Whether light maps are asked for.
+    pub(crate) fn in_texture(&self) -> bool {
+        self.storage == Storage::Texture
+    }
+
     /// Bands that are baked at most.
     pub(crate) fn most_bands(&self) -> u32 {
         self.bands.count
@@ -96,10 +101,6 @@ impl BakeOptions {
 
     /// The settings that these options stand for, with the norms of the bands of a light where one is known.
     pub(crate) fn settings(&self, light: &[f32]) -> Result<Settings> {
-        if self.storage == Storage::Texture {
-            let what = "--storage texture is not available yet: use --storage vertex";
-            return Err(Usage(what.into()).into());
-        }
         let standard = settings::standard();
         let settings = Settings {
             bands: self.bands.count,

@@ -4,6 +4,7 @@ use crate::bake::{fault, watched};
 use crate::console::Console;
 use crate::interrupt;
 use anyhow::Result;
+use bake::Extras;
 use coeff_io::{Prt, Quality, Refine, Settings};
 use scene::Scene;
 use std::time::{Duration, Instant};
@@ -35,6 +36,7 @@ struct Rung {
 pub(crate) fn bake(
     scene: &Scene,
     settings: &Settings,
+    extras: &Extras,
     allowed: Duration,
     write: &dyn Fn(&Prt) -> Result<()>,
     console: &Console,
@@ -50,7 +52,7 @@ pub(crate) fn bake(
         let start = Instant::now();
         let wanted = Settings { quality: Quality::Error(error), refine: Refine::Off, ..settings.clone() };
         let limit = best.is_some().then_some(deadline);
-        let result = bake::bake(scene, &wanted, &watched(&console.progress(), limit));
+        let result = bake::bake_with(scene, &wanted, extras, &watched(&console.progress(), limit));
         match (result, best) {
             (Err(bake::Error::Cancelled), Some(best)) => {
                 let why = if interrupt::flow().is_break() { "Ctrl-C" } else { "time is up" };

@@ -130,12 +130,15 @@ fn answers(layers: &Layers, values: &[f32], [stored, depth]: [usize; 2], rows: s
     let plane = width * layers.height as usize;
     let texels = rows.start as usize * width..rows.end as usize * width;
     let mut answers = Vec::with_capacity(stored * texels.len() * depth * channels);
-    for function in 0..stored {
+    let held = layers.count as usize / depth;
+    for function in 0..held {
         for texel in texels.clone() {
             for layer in function * depth..(function + 1) * depth {
                 answers.extend_from_slice(&values[(layer * plane + texel) * channels..][..channels]);
             }
         }
     }
+    // A sheet may hold the first functions alone: the others are 0.
+    answers.resize(stored * texels.len() * depth * channels, 0.0);
     answers
 }

@@ -111,6 +111,23 @@ impl Scene {
         material.base_color.w * self.meshes[mesh].color(triangle, u, v).w * texel
     }
 
+    /// Unit shading normal at a point of a triangle as the material's normal map bends it; unbent where there is none, or no tangents.
+    ///
+    /// `tangent * x + handedness * (normal x tangent) * y + normal * z`, where the map's green points up.
+    pub fn bent_normal(&self, mesh: usize, triangle: usize, u: f32, v: f32) -> Vec3 {
+        let (material, mesh_data) = (self.material(mesh), &self.meshes[mesh]);
+        let normal = mesh_data.normal(triangle, u, v);
+        if material.normal_texture.is_none() || mesh_data.tangents.is_empty() {
+            return normal;
+        }
+        let map = self.slot(material.normal_texture, mesh, triangle, u, v, false).truncate() * 2.0 - 1.0;
+        let tangent: Vec4 = interpolate!(mesh_data.tangents, mesh_data.triangles[triangle], u, v);
+        let along = tangent.truncate();
+        let across = normal.cross(along) * if tangent.w < 0.0 { -1.0 } else { 1.0 };
+        let bent = (along * map.x + across * map.y) * material.normal_scale + normal * map.z;
+        bent.try_normalize().unwrap_or(normal)
+    }
+
     /// Linear radiance that a point of a triangle emits.
     pub fn emission(&self, mesh: usize, triangle: usize, u: f32, v: f32) -> Vec3 {
         let material = self.material(mesh);

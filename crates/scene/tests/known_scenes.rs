@@ -69,6 +69,9 @@ fn closed_scenes_are_closed() {
     }
     assert!(is_closed(&[&builtin("half-blocked-plane").meshes[1]]), "wall");
     assert!(is_closed(&[&builtin("sphere-on-plane").meshes[1]]), "ball");
+    let rooms = builtin("two-rooms");
+    assert!(is_closed(&[&rooms.meshes[0]]), "sealed room");
+    assert!(is_closed(&[&rooms.meshes[1], &rooms.meshes[2]]), "open room and outside");
     let teacup = builtin("teacup");
     for mesh in &teacup.meshes[1..4] {
         assert!(is_closed(&[mesh]), "{}", mesh.name);
@@ -82,6 +85,7 @@ fn closedness_can_fail() {
     let mut cube = builtin("furnace-box").meshes.remove(0);
     cube.triangles.swap_remove(5);
     assert!(!is_closed(&[&cube]), "a triangle is missing");
+    assert!(!is_closed(&[&builtin("two-rooms").meshes[1]]), "a room without a roof");
 }
 
 #[test]
@@ -90,6 +94,9 @@ fn areas_and_volumes_are_those_of_the_shapes() {
     assert_close!(area(cube), 24.0, 1e-5, 0.0);
     assert_close!(volume(cube), 8.0, 1e-5, 0.0);
     assert_close!(volume(&builtin("closed-room").meshes[0]), -8.0, 1e-5, 0.0);
+    // The block less two rooms, of which the open one reaches through the roof.
+    let rooms: f64 = builtin("two-rooms").meshes.iter().map(volume).sum();
+    assert_close!(rooms, 4.1875 * 2.125 * 2.125 - 8.0 - 8.25, 1e-4, 0.0);
     assert_close!(area(&builtin("plane").meshes[0]), 16.0, 1e-5, 0.0);
     // Inscribed meshes are smaller by about (pi/n)^2.
     assert_close!(area(&builtin("sphere").meshes[0]), 4.0 * PI, 0.0, 0.005);

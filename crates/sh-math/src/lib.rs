@@ -19,6 +19,7 @@ mod evaluate;
 pub mod hemisphere;
 mod legendre;
 mod light;
+pub mod product;
 mod project;
 mod quarter_turn;
 pub mod recurrence;

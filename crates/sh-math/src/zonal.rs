@@ -28,9 +28,22 @@ pub fn phong(exponent: f64, l: usize) -> f64 {
 /// # Panics
 /// When `out` is shorter than `bands.coefficients()`.
 pub fn cosine_transfer(bands: Bands, normal: Vec3, out: &mut [f32]) {
-    evaluate(bands, normal, out);
+    lobe(bands, 1.0, normal, out);
+}
+
+/// Writes the mean of every function over the hemisphere about a unit `normal`: the coefficients of `1 / (2 pi)` there and 0 below.
+///
+/// # Panics
+/// When `out` is shorter than `bands.coefficients()`.
+pub fn hemisphere_mean(bands: Bands, normal: Vec3, out: &mut [f32]) {
+    lobe(bands, 0.0, normal, out);
+}
+
+/// The coefficients of the lobe of [`phong`] about a unit `axis`.
+fn lobe(bands: Bands, exponent: f64, axis: Vec3, out: &mut [f32]) {
+    evaluate(bands, axis, out);
     for l in bands.degrees() {
-        let factor = clamped_cosine(l) as f32;
+        let factor = phong(exponent, l) as f32;
         for value in &mut out[l * l..(l + 1) * (l + 1)] {
             *value *= factor;
         }

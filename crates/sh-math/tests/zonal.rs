@@ -75,6 +75,22 @@ fn phong_of_high_exponent_is_one() {
     assert!((twice - 1.0).abs() > 0.1, "the doubled normalisation must be seen, it gives {twice}");
 }
 
+/// Against the sum over points of the upper hemisphere; over all points of the sphere it is another.
+#[test]
+fn hemisphere_mean_equals_quadrature() {
+    let bands = Bands::new(7).expect("in range");
+    let mut mean = vec![0.0; bands.coefficients()];
+    zonal::hemisphere_mean(bands, Vec3::Z, &mut mean);
+    let worst = |low: f64| {
+        let points = testkit::quadrature::band_quadrature(low, 1.0, 16);
+        let weighed = points.into_iter().map(|(d, weight)| (DVec3::from(d), weight / (2.0 * PI)));
+        let exact = project_scalar(bands, weighed);
+        mean.iter().zip(exact).fold(0.0, |worst: f64, (a, b)| worst.max((f64::from(*a) - b).abs()))
+    };
+    assert!(worst(0.0) < 1e-6, "{:e}", worst(0.0));
+    assert!(worst(-1.0) > 0.1, "the whole sphere must be told from its half");
+}
+
 #[test]
 fn cosine_transfer_equals_projection() {
     let bands = Bands::new(6).expect("in range");

@@ -1,6 +1,8 @@
 //! What the tests of the baker share: grey scenes, quiet bakes, radiance under a white sky.
 #![allow(dead_code, reason = "each test file uses a part")]
 
+pub(crate) mod volume;
+
 use bake::settings;
 use coeff_io::{Bounces, Prt, Quality, Refine, Sampler, Settings};
 use glam::Vec4;

@@ -1,6 +1,7 @@
 //! A small baked scene in which every optional part is present.
 
 use coeff_io::*;
+use sh_math::hemisphere::Basis;
 
 /// Two meshes, two textures, three channels, two bands: every chunk kind and every record occurs.
 pub(crate) fn sample() -> Prt {
@@ -32,8 +33,8 @@ pub(crate) fn sample() -> Prt {
         geometry: geometry(),
         transfer: transfer(),
         textures: vec![texture("a.png", 3, 1), texture("b.png", 2, 2)],
-        maps: None,
-        volume: None,
+        maps: Some(maps()),
+        volume: Some(volume()),
     }
 }
 
@@ -176,4 +177,56 @@ fn transfer() -> Transfer {
 fn texture(name: &str, width: u32, height: u32) -> Texture {
     let rgba = (0..width * height).map(|i| [i as u8, 128, 255 - i as u8, 255]).collect();
     Texture { name: name.into(), width, height, rgba, wrap: [Wrap::Repeat, Wrap::Mirror] }
+}
+
+/// A sheet in every encoding.
+fn maps() -> Maps {
+    let shape = |width, height, channels| [width, height, 3, channels];
+    let values = |n: u32| -> Vec<f32> { (0..n).map(|i| 0.75 - 0.125 * i as f32).collect() };
+    let exact = Layers::exact(shape(2, 1, 3), &values(18));
+    let charts = [4, u32::MAX, 2];
+    let curves = [Curve::Srgb, Curve::Linear, Curve::Linear];
+    let coding = Coding { charts: &charts, curves: &curves, ..Coding::plain(Encoding::U8) };
+    let eight = Layers::encode(shape(1, 3, 1), &values(9), &coding).layers;
+    let half = Layers::encode(shape(1, 1, 1), &values(3), &Coding::plain(Encoding::F16)).layers;
+    Maps {
+        basis: Basis::Hl2,
+        light: MapLight::Fixed { probe: "builtin:sky".into(), bands: 5 },
+        sheets: [exact, eight, half, blocks(Encoding::Bc1), blocks(Encoding::Bc6h)]
+            .map(|layers| Sheet { layers })
+            .into(),
+        sheet_of_mesh: vec![Some(1), None],
+    }
+}
+
+/// Three layers of 3x5 texels in one channel: six blocks by hand, so that no encoder decides on them.
+fn blocks(encoding: Encoding) -> Layers {
+    let block: Vec<u8> = match encoding {
+        Encoding::Bc1 => vec![0x00, 0xF8, 0xE0, 0x07, 0xE4, 0x1B, 0xFF, 0x00],
+        _ => (15_u128 | 0x15_u128 << 39 | 7 << 65).to_le_bytes().into(),
+    };
+    let ranges = [[-0.5_f32, 0.5], [0.0, 2.0], [0.25, 0.25]];
+    let mut bytes = vec![0, u8::from(encoding == Encoding::Bc1), 0];
+    bytes.extend(ranges.as_flattened().iter().flat_map(|v| v.to_le_bytes()));
+    bytes.extend(block.repeat(6));
+    Layers { width: 3, height: 5, count: 3, channels: 1, encoding, bytes }
+}
+
+/// Two coarse cells, of which the first is split.
+fn volume() -> Volume {
+    let leaf = |first: u32| Node::Leaf(std::array::from_fn(|i| (first + i as u32) % 8));
+    Volume {
+        origin: [-1.0, 0.0, 2.0],
+        spacing: [1.0, 2.0, 0.5],
+        cells: [1, 2, 1],
+        nodes: [Node::Split(2), leaf(0)].into_iter().chain((1..9).map(leaf)).collect(),
+        light: MapLight::Relightable { bands: 1 },
+        channels: 1,
+        values: (0..8 * 9).map(|i| i as f32 * 0.0625 - 2.0).collect(),
+        positions: (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|n| n as f32)).collect(),
+        validity: (0..8).map(|i| i as f32 * 0.125).collect(),
+        distances: (0..8).flat_map(|i| [i as f32 * 0.5, (i * i) as f32 * 0.25 + 0.125]).collect(),
+        resolution: 1,
+        reach: 4.0,
+    }
 }

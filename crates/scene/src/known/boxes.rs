@@ -121,7 +121,8 @@ pub(super) fn upright_sides(patches: &mut Patches, a: Vec3, b: Vec3, columns: u3
     patches.flat(a, Vec3::Z * d.z, up, columns, rows);
 }
 
-fn turn_inside_out(mesh: &mut Mesh) {
+/// Makes a mesh face the other way.
+pub(super) fn turn_inside_out(mesh: &mut Mesh) {
     mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     mesh.normals.iter_mut().for_each(|n| *n = -*n);
 }

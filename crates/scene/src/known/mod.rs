@@ -8,6 +8,7 @@ mod atrium;
 mod boxes;
 mod patch;
 mod planes;
+mod rooms;
 mod round;
 mod teacup;
 
@@ -20,6 +21,7 @@ pub use round::bowl_radiance;
 pub const BUILTINS: &[(&str, &str)] = &[
     ("furnace-box", "closed cube, albedo 0.5: radiance 0.5 under a sky of 1, for any number of bounces"),
     ("closed-room", "closed cube seen from inside: black under every sky"),
+    ("two-rooms", "an open room beside a sealed one behind a thin wall: black in there under every sky"),
     ("plane", "one square under the open sky: the unshadowed transfer"),
     ("half-blocked-plane", "a black wall on a plane hides an exactly known share of the sky"),
     ("facing-planes", "two squares that face each other: exactly known form factors"),
@@ -36,6 +38,7 @@ pub fn builtin(name: &str) -> Option<Scene> {
     Some(match name {
         "furnace-box" => boxes::furnace_box(),
         "closed-room" => boxes::closed_room(),
+        "two-rooms" => rooms::two_rooms(),
         "plane" => planes::plane(),
         "half-blocked-plane" => planes::half_blocked_plane(),
         "facing-planes" => planes::facing_planes(),

@@ -6,10 +6,12 @@
 mod chart;
 mod cover;
 mod fault;
+mod seam;
 mod texel;
 mod unwrap;
 
 pub use chart::Charts;
 pub use fault::{Fault, FaultKind, faults, share};
+pub use seam::{Seam, SeamSide, seams};
 pub use texel::{Texel, texels};
 pub use unwrap::{Atlas, Density, Unwrap, UnwrapError, unwrap};

@@ -1,0 +1,274 @@
+//! The radiance that arrives at a point from all its directions: what normals that are known only later are lit by.
+//!
+//! It is kept as spherical harmonics over directions, for every coefficient of the light: `c_ki = integral of V Y_k Y_i` over the open
+//! directions, by triple products of the coefficients of visibility, plus what every surface that blocks sends on (\[N\] eqs. 2.1, 2.2).
+
+use crate::directions::DirectionBank;
+use crate::field::Field;
+use crate::gather::{Gatherer, Worker};
+use crate::receivers::{Receiver, Receivers};
+use crate::senders::resolve;
+use crate::world::World;
+use coeff_io::Quality;
+use glam::Vec3;
+use rayon::prelude::*;
+use raytrace::Hit;
+use sh_math::product::{Triple, triples};
+use sh_math::{Bands, zonal};
+
+/// What surfaces send on, for albedo 1.
+pub(crate) enum Sent<'a> {
+    /// The answer to every coefficient of the light.
+    Transfer(&'a Field),
+    /// The radiance under one light, RGB, per receiver.
+    Radiance(Vec<[f32; 3]>),
+}
+
+impl<'a> Sent<'a> {
+    /// The radiance of every receiver under a light.
+    pub(crate) fn under(transfer: &Field, receivers: usize, light: &[[f32; 3]]) -> Self {
+        let one = |r: u32| {
+            std::array::from_fn(|c| {
+                let row = transfer.channel(r, c.min(transfer.channels - 1));
+                row.iter().zip(light).map(|(t, l)| t * l[c]).sum()
+            })
+        };
+        Self::Radiance((0..receivers as u32).into_par_iter().map(one).collect())
+    }
+}
+
+/// How open directions become coefficients.
+enum Direct {
+    /// For every coefficient of the light.
+    Terms(Vec<Triple>),
+    /// Under one light: `[function][coefficient of visibility]`, RGB.
+    Lit(Vec<[f32; 3]>),
+}
+
+/// Finds what arrives at points.
+pub(crate) struct Arrivals<'a> {
+    gatherer: Gatherer<'a>,
+    receivers: &'a Receivers,
+    sent: Sent<'a>,
+    direct: Direct,
+    functions: Bands,
+    shape: Shape,
+}
+
+/// Shape of what arrives: `[function][depth][channel]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Shape {
+    pub(crate) functions: usize,
+    /// Coefficients of the light, or 1 where it is in the numbers.
+    pub(crate) depth: usize,
+    pub(crate) channels: usize,
+}
+
+impl Shape {
+    pub(crate) fn len(self) -> usize {
+        self.functions * self.depth * self.channels
+    }
+}
+
+/// What arrives at one point.
+pub(crate) struct Arrival {
+    /// Radiance in world axes, by [`Shape`].
+    pub(crate) values: Vec<f32>,
+    /// Share of the directions that is open.
+    pub(crate) openness: f32,
+    /// Share of the others that meets the inside of a body.
+    pub(crate) inside_share: f32,
+    /// Estimated error of the irradiance in 3 bands, against that of an open point.
+    pub(crate) error: f32,
+    /// Rays that were traced.
+    pub(crate) visibility_rays: u64,
+    pub(crate) bounce_rays: u64,
+    /// Directions that were looked up, with distances in metres.
+    pub(crate) seen: Vec<(Vec3, f32)>,
+}
+
+/// What is needed beside the bank.
+pub(crate) struct Setting<'a> {
+    pub(crate) world: &'a World<'a>,
+    pub(crate) receivers: &'a Receivers,
+    pub(crate) sent: Sent<'a>,
+    pub(crate) quality: Quality,
+    /// Whether rays decide what is seen.
+    pub(crate) visibility: bool,
+    /// Whether what blocks sends light on.
+    pub(crate) hits: bool,
+    /// Coefficients of the one light, RGB; none for transfer.
+    pub(crate) light: Option<&'a [[f32; 3]]>,
+    /// Bands of the light.
+    pub(crate) light_bands: Bands,
+    /// Bands over directions.
+    pub(crate) functions: Bands,
+}
+
+impl Setting<'_> {
+    /// Bands of visibility that its product with a light and with a function needs.
+    pub(crate) fn visibility_bands(light: Bands, functions: Bands) -> Bands {
+        let count = light.count() + functions.count() - 1;
+        Bands::new(count as u32).expect("settings keep bands far below the most")
+    }
+}
+
+impl<'a> Arrivals<'a> {
+    /// The bank is to hold [`Setting::visibility_bands`].
+    pub(crate) fn new(bank: &'a DirectionBank, setting: Setting<'a>) -> Self {
+        let bands = Setting::visibility_bands(setting.light_bands, setting.functions);
+        let terms = triples(setting.functions, setting.light_bands, bands);
+        let (depth, channels) = match &setting.sent {
+            Sent::Transfer(field) => (setting.light_bands.coefficients(), field.channels),
+            Sent::Radiance(_) => (1, 3),
+        };
+        let direct = match setting.light {
+            None => Direct::Terms(terms),
+            Some(light) => Direct::Lit(lit(&terms, light, setting.functions, bands)),
+        };
+        let gatherer = Gatherer {
+            world: setting.world,
+            bank,
+            bands,
+            quality: setting.quality,
+            visibility: setting.visibility,
+            hits: setting.hits,
+            permanent: u32::MAX,
+            worth: f32::INFINITY,
+        };
+        let shape = Shape { functions: setting.functions.coefficients(), depth, channels };
+        Self { gatherer, receivers: setting.receivers, sent: setting.sent, direct, functions: setting.functions, shape }
+    }
+
+    pub(crate) fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// What arrives at a receiver: a pure function of the scene, the settings and the receiver's index.
+    pub(crate) fn at(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Arrival {
+        let (direct, step) = self.gatherer.direct(receiver, index, worker);
+        let mut values = vec![0.0; self.shape.len()];
+        self.add_open(&direct.transfer, &mut values);
+        let mut arrival = Arrival {
+            values,
+            openness: direct.openness,
+            inside_share: 0.0,
+            error: direct.error,
+            visibility_rays: direct.visibility_rays,
+            bounce_rays: 0,
+            seen: Vec::new(),
+        };
+        if direct.openness < 1.0 {
+            let blockers = self.gatherer.blockers(receiver, index, step, direct.openness, worker);
+            arrival.inside_share = blockers.inside_share;
+            arrival.bounce_rays = blockers.rays;
+            if self.gatherer.hits && !blockers.found.is_empty() {
+                let open = self.gatherer.bank.domain.open_about(self.functions, receiver.normal);
+                let closed: Vec<f32> = open.iter().zip(&direct.transfer).map(|(all, open)| all - open).collect();
+                self.add_sent(&blockers.found, &closed, &mut arrival.values);
+            }
+            arrival.seen = blockers.found.iter().map(|(direction, hit, _)| (*direction, hit.t)).collect();
+        }
+        let angle = self.gatherer.bank.domain.solid_angle() as f32;
+        arrival.values.iter_mut().for_each(|value| *value *= angle);
+        arrival
+    }
+
+    fn add_open(&self, visibility: &[f32], values: &mut [f32]) {
+        let Shape { functions, depth, channels } = self.shape;
+        match &self.direct {
+            Direct::Terms(terms) => {
+                let mut sums = vec![0.0f64; functions * depth];
+                for term in terms {
+                    sums[term.a as usize * depth + term.b as usize] +=
+                        term.value * f64::from(visibility[term.c as usize]);
+                }
+                for (out, sum) in values.chunks_exact_mut(channels).zip(sums) {
+                    out.fill(sum as f32);
+                }
+            }
+            Direct::Lit(rows) => {
+                for (out, row) in values.chunks_exact_mut(channels).zip(rows.chunks_exact(visibility.len())) {
+                    for (factor, v) in row.iter().zip(visibility) {
+                        out.iter_mut().zip(factor).for_each(|(sum, factor)| *sum += factor * v);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds what surfaces send along the directions that meet them, by their shares of the domain.
+    ///
+    /// `closed` is the mean of every function over the directions that are not open: few directions miss it, so their mean goes with what
+    /// they miss. A surrounding that sends the same everywhere is exact.
+    fn add_sent(&self, found: &[(Vec3, Hit, f32)], closed: &[f32], values: &mut [f32]) {
+        let Shape { functions, depth, channels } = self.shape;
+        let mut missed = closed.to_vec();
+        let (mut mean, mut total) = (vec![0.0f32; depth * channels], 0.0f32);
+        let (mut harmonics, mut sent) = (vec![0.0; functions], vec![0.0f32; depth * channels]);
+        for (direction, hit, weight) in found {
+            sh_math::evaluate(self.functions, *direction, &mut harmonics);
+            missed.iter_mut().zip(&harmonics).for_each(|(rest, y)| *rest -= weight * y);
+            total += weight;
+            if !self.sent(hit, &mut sent) {
+                continue;
+            }
+            mean.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += weight * s);
+            for (out, harmonic) in values.chunks_exact_mut(depth * channels).zip(&harmonics) {
+                let factor = weight * harmonic;
+                out.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += factor * s);
+            }
+        }
+        if total > 0.0 {
+            for (out, rest) in values.chunks_exact_mut(depth * channels).zip(missed) {
+                out.iter_mut().zip(&mean).for_each(|(sum, m)| *sum += rest / total * m);
+            }
+        }
+    }
+
+    /// Writes what a surface sends at a point, `[depth][channel]`; whether it sends anything.
+    fn sent(&self, hit: &Hit, out: &mut [f32]) -> bool {
+        let world = self.gatherer.world;
+        let albedo = world.albedo(hit.triangle, hit.u, hit.v).to_array();
+        if albedo == [0.0; 3] {
+            return false;
+        }
+        out.fill(0.0);
+        let corners = world.corners[hit.triangle as usize].map(|c| resolve(c, !hit.front, self.receivers));
+        let channels = self.shape.channels;
+        for (corner, share) in corners.into_iter().zip([1.0 - hit.u - hit.v, hit.u, hit.v]) {
+            for (channel, albedo) in albedo.iter().enumerate().take(channels) {
+                let factor = share * albedo;
+                match &self.sent {
+                    Sent::Transfer(field) => {
+                        let row = field.channel(corner, channel);
+                        let out = out.iter_mut().skip(channel).step_by(channels);
+                        out.zip(row).for_each(|(sum, t)| *sum += factor * t);
+                    }
+                    Sent::Radiance(radiance) => out[channel] += factor * radiance[corner as usize][channel],
+                }
+            }
+        }
+        true
+    }
+}
+
+/// The products of one light with every coefficient of visibility.
+fn lit(terms: &[Triple], light: &[[f32; 3]], functions: Bands, visibility: Bands) -> Vec<[f32; 3]> {
+    let mut sums = vec![[0.0f64; 3]; functions.coefficients() * visibility.coefficients()];
+    for term in terms {
+        let slot = &mut sums[term.a as usize * visibility.coefficients() + term.c as usize];
+        for (sum, l) in slot.iter_mut().zip(light[term.b as usize]) {
+            *sum += term.value * f64::from(l);
+        }
+    }
+    sums.into_iter().map(|sum| sum.map(|x| x as f32)).collect()
+}
+
+/// Turns radiance over directions into irradiance / pi over normals, \[N\] eqs. 2.3 and 2.4.
+pub(crate) fn to_irradiance(values: &mut [f32], shape: Shape) {
+    for (k, row) in values.chunks_exact_mut(shape.depth * shape.channels).enumerate() {
+        let factor = zonal::clamped_cosine(k.isqrt()) as f32;
+        row.iter_mut().for_each(|value| *value *= factor);
+    }
+}

@@ -1,0 +1,111 @@
+//! What is baked beside the transfer of the vertices, from the same light between surfaces.
+
+use crate::arrival::{Arrivals, Sent, Setting};
+use crate::directions::DirectionBank;
+use crate::domain::{Domain, Judge};
+use crate::field::Field;
+use crate::gather::Gatherer;
+use crate::passes::Monitor;
+use crate::plan::allowed;
+use crate::receivers::Receivers;
+use crate::{Error, MapSettings, VolumeSettings};
+use coeff_io::{Bounces, Effect, MapLight, Plan, Prt, Settings};
+use scene::Scene;
+use sh_math::Bands;
+
+/// What is wanted beside the transfer of the vertices; nothing by default.
+#[derive(Debug, Clone, Default)]
+pub struct Extras {
+    /// Directional light maps.
+    pub maps: Option<MapSettings>,
+    /// An irradiance volume.
+    pub volume: Option<VolumeSettings>,
+    /// The light to put into them; without one they can be relit.
+    pub light: Option<FixedLight>,
+}
+
+impl Extras {
+    /// Whether diffuse light will be drawn by the normals of normal maps.
+    pub(crate) fn is_directional(&self) -> bool {
+        self.maps.as_ref().is_some_and(|maps| maps.sheets.iter().any(|sheet| sheet.directional))
+    }
+}
+
+/// A light that is baked in.
+#[derive(Debug, Clone)]
+pub struct FixedLight {
+    /// The probe as the user named it.
+    pub name: String,
+    /// Radiance, RGB, as many coefficients as the bake has.
+    pub coefficients: Vec<[f32; 3]>,
+}
+
+/// A scene whose vertices are done.
+pub(crate) struct Done<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) gatherer: &'a Gatherer<'a>,
+    pub(crate) receivers: &'a Receivers,
+    /// All bounces together, of every receiver.
+    pub(crate) transfer: &'a Field,
+    pub(crate) settings: &'a Settings,
+    pub(crate) plan: &'a Plan,
+    pub(crate) light: Option<&'a FixedLight>,
+    pub(crate) monitor: &'a Monitor<'a>,
+}
+
+impl Done<'_> {
+    /// What the coefficients of maps and volumes will hold.
+    pub(crate) fn map_light(&self) -> MapLight {
+        let bands = self.plan.bands;
+        match self.light {
+            Some(light) => MapLight::Fixed { probe: light.name.clone(), bands },
+            None => MapLight::Relightable { bands },
+        }
+    }
+
+    fn light_bands(&self) -> Bands {
+        Bands::new(self.plan.bands).expect("no more than the settings ask for")
+    }
+
+    /// The directions to look along for radiance in so many bands over them.
+    pub(crate) fn bank(&self, domain: fn(Judge) -> Domain, functions: Bands) -> DirectionBank {
+        let bands = Setting::visibility_bands(self.light_bands(), functions);
+        let judge = Judge::new(self.light_bands(), bands);
+        DirectionBank::over(domain(judge), bands, self.settings)
+    }
+
+    /// What arrives at points, along the directions of a bank of [`Done::bank`].
+    pub(crate) fn arrivals<'b>(&'b self, bank: &'b DirectionBank, functions: Bands) -> Arrivals<'b> {
+        let light = self.light.map(|light| &light.coefficients[..self.light_bands().coefficients()]);
+        // Surfaces that see nothing of each other are seen from points in space.
+        let in_space = matches!(bank.domain, Domain::Sphere(_));
+        let bounces = allowed(self.settings, Effect::Interreflection) && self.settings.bounces != Bounces::Fixed(0);
+        let setting = Setting {
+            world: self.gatherer.world,
+            receivers: self.receivers,
+            sent: match light {
+                Some(light) => Sent::under(self.transfer, self.receivers.list.len(), light),
+                None => Sent::Transfer(self.transfer),
+            },
+            quality: self.settings.quality,
+            visibility: self.gatherer.visibility || in_space && allowed(self.settings, Effect::Visibility),
+            hits: self.gatherer.hits || in_space && bounces,
+            light,
+            light_bands: self.light_bands(),
+            functions,
+        };
+        Arrivals::new(bank, setting)
+    }
+
+    /// Bakes what is wanted into the file.
+    pub(crate) fn add(&self, extras: &Extras, prt: &mut Prt) -> Result<(), Error> {
+        if let Some(settings) = &extras.maps {
+            let maps = crate::maps::bake(self, settings, prt)?;
+            prt.maps = Some(maps);
+        }
+        if let Some(settings) = &extras.volume {
+            prt.volume = Some(crate::volume::bake(self, settings)?);
+        }
+        Ok(())
+    }
+}

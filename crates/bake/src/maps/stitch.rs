@@ -1,0 +1,171 @@
+//! Makes the light of the two sides of a seam agree as the filter reads it.
+//!
+//! The numbers `x` of the texels along seams are those with the least `sum over points of (left(x) - right(x))^2 + mu |x - before|^2`,
+//! where left and right are the bilinear look-ups at one point of a seam. Each number of a row is solved for by itself, by conjugate
+//! gradients.
+
+use rayon::prelude::*;
+
+/// Weight of staying as it was, against one look-up at a seam. There are about two look-ups to a texel.
+const STAY: f32 = 0.02;
+/// Numbers of a row that are solved for side by side.
+const LANES: usize = 16;
+/// Most steps of the solver.
+const STEPS: usize = 100;
+/// Part of the first residual at which a solution is good.
+const ENOUGH: f64 = 1e-4;
+
+/// Two look-ups that should agree: slots with weights, those of the second side negative.
+pub(crate) type Agreement = Vec<(u32, f32)>;
+
+/// Moves the rows (`row_len` numbers each) of the slots that the agreements name.
+pub(crate) fn stitch(agreements: &[Agreement], row_len: usize, values: &mut [f32]) {
+    let mut slots: Vec<u32> = agreements.iter().flatten().map(|&(slot, _)| slot).collect();
+    slots.sort_unstable();
+    slots.dedup();
+    if slots.is_empty() {
+        return;
+    }
+    let local = |slot: u32| slots.binary_search(&slot).expect("listed") as u32;
+    let rows: Vec<Agreement> =
+        agreements.iter().map(|row| row.iter().map(|&(slot, weight)| (local(slot), weight)).collect()).collect();
+    let solved: Vec<Vec<[f32; LANES]>> = (0..row_len.div_ceil(LANES))
+        .into_par_iter()
+        .map(|batch| {
+            let number = |slot: u32, lane: usize| {
+                let n = batch * LANES + lane;
+                if n < row_len { values[slot as usize * row_len + n] } else { 0.0 }
+            };
+            let before = slots.iter().map(|&slot| std::array::from_fn(|lane| number(slot, lane))).collect();
+            solve(&rows, before)
+        })
+        .collect();
+    for (batch, solved) in solved.into_iter().enumerate() {
+        for (&slot, lanes) in slots.iter().zip(solved) {
+            let row = &mut values[slot as usize * row_len..][..row_len];
+            row[batch * LANES..].iter_mut().zip(lanes).for_each(|(value, lane)| *value = lane);
+        }
+    }
+}
+
+/// Conjugate gradients for the change `d`: `(A^T A + mu) d = -A^T A before`.
+fn solve(rows: &[Agreement], before: Vec<[f32; LANES]>) -> Vec<[f32; LANES]> {
+    let mut residual = squared(rows, &before);
+    residual.iter_mut().flatten().for_each(|value| *value = -*value);
+    let mut change = vec![[0.0f32; LANES]; before.len()];
+    let mut direction = residual.clone();
+    let mut norm = dot(&residual, &residual);
+    let first = norm;
+    for _ in 0..STEPS {
+        let mut image = squared(rows, &direction);
+        for (out, along) in image.iter_mut().zip(&direction) {
+            out.iter_mut().zip(along).for_each(|(out, along)| *out += STAY * along);
+        }
+        let slope = dot(&direction, &image);
+        let step: [f32; LANES] = std::array::from_fn(|k| ratio(norm[k], slope[k]));
+        for ((d, r), (p, q)) in change.iter_mut().zip(&mut residual).zip(direction.iter().zip(&image)) {
+            for k in 0..LANES {
+                d[k] += step[k] * p[k];
+                r[k] -= step[k] * q[k];
+            }
+        }
+        let next = dot(&residual, &residual);
+        if next.iter().zip(first).all(|(&now, first)| now <= ENOUGH * ENOUGH * first) {
+            break;
+        }
+        for (p, r) in direction.iter_mut().zip(&residual) {
+            for k in 0..LANES {
+                p[k] = r[k] + ratio(next[k], norm[k]) * p[k];
+            }
+        }
+        norm = next;
+    }
+    change.iter().zip(before).map(|(d, b)| std::array::from_fn(|k| b[k] + d[k])).collect()
+}
+
+fn ratio(a: f64, b: f64) -> f32 {
+    if b > 0.0 { (a / b) as f32 } else { 0.0 }
+}
+
+/// `A^T A x`.
+fn squared(rows: &[Agreement], x: &[[f32; LANES]]) -> Vec<[f32; LANES]> {
+    let mut out = vec![[0.0; LANES]; x.len()];
+    for row in rows {
+        let mut sum = [0.0; LANES];
+        for &(slot, weight) in row {
+            sum.iter_mut().zip(x[slot as usize]).for_each(|(sum, value)| *sum += weight * value);
+        }
+        for &(slot, weight) in row {
+            out[slot as usize].iter_mut().zip(sum).for_each(|(out, sum)| *out += weight * sum);
+        }
+    }
+    out
+}
+
+fn dot(a: &[[f32; LANES]], b: &[[f32; LANES]]) -> [f64; LANES] {
+    let mut sum = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for k in 0..LANES {
+            sum[k] += f64::from(a[k]) * f64::from(b[k]);
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Agreement, STAY, stitch};
+
+    /// One agreement of two texels: the least of `(a - b)^2 + mu ((a - a0)^2 + (b - b0)^2)` has `a - b = (a0 - b0) mu / (2 + mu)`, and
+    /// the sum stays.
+    #[test]
+    fn two_texels_meet_in_the_middle() {
+        let mut values = vec![3.0, 10.0, 1.0, -2.0];
+        stitch(&[vec![(0, 1.0), (1, -1.0)]], 2, &mut values);
+        for k in 0..2 {
+            let (before, after) = ([3.0, 10.0][k] - [1.0, -2.0][k], values[k] - values[2 + k]);
+            assert!((after - before * STAY / (2.0 + STAY)).abs() < 1e-4, "{after}");
+            assert!((values[k] + values[2 + k] - [4.0, 8.0][k]).abs() < 1e-4);
+        }
+    }
+
+    /// Against a dense solution by elimination, on a chain of look-ups with odd weights.
+    #[test]
+    fn a_chain_is_solved() {
+        const N: usize = 9;
+        let rows: Vec<Agreement> =
+            (0..N - 1).map(|k| vec![(k as u32, 0.75), ((k + 1) as u32, 0.25), (((k + 4) % N) as u32, -1.0)]).collect();
+        let before: Vec<f32> = (0..N).map(|k| ((k * k * 7) % 11) as f32).collect();
+        let mut values = before.clone();
+        stitch(&rows, 1, &mut values);
+        let exact = dense(&rows, &before);
+        let worst = |a: &[f32]| a.iter().zip(&exact).map(|(x, e)| (f64::from(*x) - e).abs()).fold(0.0, f64::max);
+        assert!(worst(&values) < 2e-3, "{}", worst(&values));
+        assert!(worst(&before) > 1.0, "the start must be seen to be wrong");
+    }
+
+    fn dense(rows: &[Agreement], before: &[f32]) -> Vec<f64> {
+        let n = before.len();
+        let mut m = vec![vec![0.0f64; n + 1]; n];
+        for (i, row) in m.iter_mut().enumerate() {
+            row[i] = f64::from(STAY);
+            row[n] = f64::from(STAY) * f64::from(before[i]);
+        }
+        for row in rows {
+            for &(i, a) in row {
+                for &(j, b) in row {
+                    m[i as usize][j as usize] += f64::from(a) * f64::from(b);
+                }
+            }
+        }
+        for i in 0..n {
+            for j in 0..n {
+                if j != i {
+                    let factor = m[j][i] / m[i][i];
+                    (0..=n).for_each(|k| m[j][k] -= factor * m[i][k]);
+                }
+            }
+        }
+        (0..n).map(|i| m[i][n] / m[i][i]).collect()
+    }
+}

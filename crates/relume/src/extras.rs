@@ -1,0 +1,65 @@
+//! What is baked beside the transfer of the vertices, as typed.
+
+use crate::console::Console;
+use crate::draw::Window;
+use crate::maps::MapOptions;
+use crate::source::{ProbeSource, ReadOptions};
+use crate::usage::Usage;
+use anyhow::Result;
+use bake::{Extras, FixedLight};
+use scene::Scene;
+use sh_math::Bands;
+
+/// Light maps, and whether light is in them.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct ExtraOptions {
+    #[command(flatten)]
+    maps: MapOptions,
+    /// Whether light maps and volumes answer to any light, or hold that of --probe: fixed takes a small part of the bytes.
+    #[arg(long, value_enum, default_value_t = LightMode::Relightable)]
+    light: LightMode,
+    /// What is done against ringing of a fixed light.
+    #[arg(long, value_enum, default_value_t = Window::None)]
+    window: Window,
+}
+
+/// Whether light is baked in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum LightMode {
+    /// Transfer: any light can be put on, and turned.
+    Relightable,
+    /// The light of --probe as it lies.
+    Fixed,
+}
+
+impl ExtraOptions {
+    /// The extras for a scene, which is unwrapped where its light-map coordinates do not serve.
+    pub(crate) fn of(
+        &self,
+        scene: &mut Scene,
+        in_texture: bool,
+        bands: u32,
+        probe: Option<(&ProbeSource, &ReadOptions)>,
+        console: &Console,
+    ) -> Result<Extras> {
+        let light = match (self.light, probe) {
+            (LightMode::Relightable, _) => None,
+            (LightMode::Fixed, None) => {
+                return Err(Usage("--light fixed bakes a light in: say which with --probe".into()).into());
+            }
+            (LightMode::Fixed, Some((probe, read))) => Some(self.fixed(probe, read, bands, console)?),
+        };
+        if light.is_some() && !in_texture {
+            return Err(Usage("--light fixed is for light maps: add --storage texture".into()).into());
+        }
+        let maps = in_texture.then(|| self.maps.settings(scene, console)).transpose()?;
+        Ok(Extras { maps, light, ..Extras::default() })
+    }
+
+    fn fixed(&self, probe: &ProbeSource, read: &ReadOptions, bands: u32, console: &Console) -> Result<FixedLight> {
+        let environment = probe.load(read, console)?;
+        let bands = Bands::new(bands).ok_or_else(|| Usage(format!("--bands {bands}: use 1 to 32")))?;
+        let light = self.window.apply(&sh_math::project(bands, environment.samples()));
+        Ok(FixedLight { name: environment.name, coefficients: light.values })
+    }
+}
