@@ -16,6 +16,7 @@ mod lens;
 mod light;
 mod light_facts;
 mod list;
+mod look;
 mod maps;
 mod output;
 mod picture;
