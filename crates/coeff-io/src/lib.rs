@@ -54,7 +54,7 @@ pub use map_error::{MapError, normals};
 pub use map_header::{MapsHeader, SheetHeader, basis_id, basis_of};
 pub use model::{AlphaMode, Camera, Geometry, Material, Mesh, Prt, Texture, TextureSlot, Transfer, Wrap};
 pub use plan::{Effect, EffectCost, MeshPlan, Plan, PlanRow, Survey};
-pub use record::{Achieved, BandChoice, Bounces, Effects, Quality, Refine, RepairCounts, Sampler, Settings};
+pub use record::{Achieved, BandChoice, Bounces, Effects, MapRecord, Quality, Refine, RepairCounts, Sampler, Settings};
 pub use replace::replace;
 pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};
 pub use texels::Container;

@@ -244,7 +244,9 @@ impl Check<'_> {
         self.header(u64::from(achieved.worst_receiver) < vertices, || {
             format!("the worst receiver {} does not exist", achieved.worst_receiver)
         })?;
-        let sound = achieved.error.iter().chain(&achieved.bounce_changes).all(|v| v.is_finite() && *v >= 0.0);
+        let of_maps = achieved.maps.iter().flat_map(|maps| &maps.error);
+        let sound =
+            achieved.error.iter().chain(&achieved.bounce_changes).chain(of_maps).all(|v| v.is_finite() && *v >= 0.0);
         self.header(sound, || "an achieved error is no number".into())
     }
 
