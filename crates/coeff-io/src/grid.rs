@@ -46,14 +46,8 @@ impl Volume {
         for index in 0..x * y * z {
             let place = [index % x, index / x % y, index / (x * y)];
             let point = Vec3::from_array(std::array::from_fn(|i| self.origin[i] + step[i] * place[i] as f32));
-            let weights = self.weights(point, None, Lookup::Visible);
-            for (k, function) in functions.iter_mut().enumerate() {
-                let mut sum = [0.0; 3];
-                for (probe, weight) in weights.probes.into_iter().zip(weights.weights) {
-                    sum = std::array::from_fn(|c| sum[c] + weight * lit[probe as usize][k][c]);
-                }
-                function.push(sum);
-            }
+            let blended = self.weights(point, None, Lookup::Visible).blend(&lit);
+            functions.iter_mut().zip(blended).for_each(|(function, coefficient)| function.push(coefficient));
         }
         Ok(Grid { origin: self.origin, step, points: [x, y, z].map(|n| n as u32), functions })
     }

@@ -60,4 +60,4 @@ pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};
 pub use texels::Container;
 pub use volume::{Node, Volume};
 pub use volume_header::VolumeHeader;
-pub use volume_lookup::{BEHIND, BIAS, Cell, LEAST_DEVIATION, Lookup, Weights};
+pub use volume_lookup::{BEHIND, BIAS, Cell, LEAST_DEVIATION, Lookup, Weights, irradiance_at};

@@ -56,6 +56,35 @@ pub struct Weights {
     pub weights: [f32; 8],
 }
 
+impl Weights {
+    /// The coefficients of a point from those of all probes ([`Volume::lit`]): what a renderer sums once per point.
+    ///
+    /// # Panics
+    /// When there are fewer probes than those of the volume.
+    #[must_use]
+    pub fn blend(&self, lit: &[[[f32; 3]; FUNCTIONS]]) -> [[f32; 3]; FUNCTIONS] {
+        let mut sum = [[0.0; 3]; FUNCTIONS];
+        for (probe, weight) in self.probes.into_iter().zip(self.weights).filter(|(_, weight)| *weight > 0.0) {
+            for (sum, coefficient) in sum.iter_mut().zip(&lit[probe as usize]) {
+                *sum = std::array::from_fn(|c| sum[c] + weight * coefficient[c]);
+            }
+        }
+        sum
+    }
+}
+
+/// Irradiance / pi at a unit normal in world axes, of blended coefficients; it may ring below zero.
+#[must_use]
+pub fn irradiance_at(coefficients: &[[f32; 3]; FUNCTIONS], normal: Vec3) -> [f32; 3] {
+    let mut functions = [0.0; FUNCTIONS];
+    sh_math::evaluate(Bands::new(3).expect("there are three bands"), normal, &mut functions);
+    let mut sum = [0.0; 3];
+    for (coefficient, function) in coefficients.iter().zip(functions) {
+        sum = std::array::from_fn(|c| sum[c] + function * coefficient[c]);
+    }
+    sum
+}
+
 impl Volume {
     /// The leaf that holds a point (world space), which is brought to the border where it lies outside.
     #[must_use]
@@ -169,14 +198,8 @@ impl Volume {
     #[must_use]
     pub fn irradiance_by(&self, lookup: Lookup, point: Vec3, normal: Vec3, light: &[[f32; 3]]) -> [f32; 3] {
         let Weights { probes, weights } = self.weights(point, Some(normal), lookup);
-        let mut functions = [0.0; FUNCTIONS];
-        sh_math::evaluate(Bands::new(3).expect("there are three bands"), normal, &mut functions);
-        let mut sum = [0.0; 3];
-        for (probe, weight) in probes.into_iter().zip(weights).filter(|(_, weight)| *weight > 0.0) {
-            for (coefficient, function) in self.coefficients(probe as usize, light).iter().zip(functions) {
-                sum = std::array::from_fn(|c| sum[c] + weight * function * coefficient[c]);
-            }
-        }
-        sum
+        let lit = probes.map(|probe| self.coefficients(probe as usize, light));
+        let eight = Weights { probes: [0, 1, 2, 3, 4, 5, 6, 7], weights };
+        irradiance_at(&eight.blend(&lit), normal)
     }
 }

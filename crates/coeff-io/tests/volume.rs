@@ -1,6 +1,6 @@
 //! What a volume says between its probes: closed forms, and walls that light does not pass.
 
-use coeff_io::{BEHIND, BIAS, LEAST_DEVIATION, Lookup, MapLight, Node, Volume, octahedral};
+use coeff_io::{BEHIND, BIAS, LEAST_DEVIATION, Lookup, MapLight, Node, Volume, irradiance_at, octahedral};
 use glam::{DVec3, Vec2, Vec3};
 
 const WHITE: [[f32; 3]; 1] = [[1.0; 3]];
@@ -229,6 +229,8 @@ fn irradiance_is_linear_in_the_light() {
     for c in 0..3 {
         assert!((f64::from(found[c]) - sum[c]).abs() < 1e-5, "{found:?}, not {sum:?}");
     }
+    let blended = volume.weights(point, None, Lookup::Trilinear).blend(&volume.lit(&light));
+    assert_eq!(irradiance_at(&blended, normal), found);
     assert_eq!(volume.lit(&light)[3], volume.coefficients(3, &light));
     let fixed =
         Volume { light: MapLight::Fixed { probe: "sky".into(), bands: 5 }, values: vec![0.5; 8 * 9 * 3], ..volume };
