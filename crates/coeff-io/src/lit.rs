@@ -1,6 +1,6 @@
 //! Light maps as renderers take them: whether they fit the rest of the file, in which basis they are drawn, and the change to it.
 
-use crate::{Lit, MapLight, Maps, Prt};
+use crate::{Lit, MapLight, Maps, Prt, Sheet};
 use glam::Quat;
 use sh_math::{Bands, Rgb, hemisphere::Basis};
 
@@ -63,6 +63,31 @@ impl Maps {
         let depth = self.light.depth();
         let held = layers as usize / depth;
         layers as usize == held * depth && (held == self.basis.count() || self.basis.cut(held).is_some())
+    }
+
+    /// The functions that a sheet holds: those of the basis, or of its cut.
+    #[must_use]
+    pub fn held(&self, sheet: &Sheet) -> Basis {
+        let functions = sheet.layers.count as usize / self.light.depth();
+        self.basis.cut(functions).unwrap_or(self.basis)
+    }
+
+    /// The basis that a sheet which holds `held` is drawn in where `asked` is asked for: an ordinary light map, one function, stays what
+    /// it is, as no normal map lies upon it.
+    #[must_use]
+    pub fn shown(held: Basis, asked: Basis) -> Basis {
+        if held.count() == 1 { held } else { asked }
+    }
+
+    /// A sheet under a light in the basis that it is drawn in where `asked` is asked for.
+    #[must_use]
+    pub fn lit_in(&self, sheet: &Sheet, light: &Rgb, asked: Basis) -> (Basis, Lit) {
+        let held = self.held(sheet);
+        let shown = Self::shown(held, asked);
+        let mut lit = sheet.lit(self, &self.light_of(light).values);
+        // Functions that are not held came back as zeros.
+        lit.functions.truncate(held.count());
+        (shown, lit.changed(held, shown))
     }
 
     /// Whether any mesh shows a map.
