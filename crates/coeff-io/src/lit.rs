@@ -19,7 +19,7 @@ impl Maps {
 
     /// What in the maps does not fit the rest of `prt`, or each other, in half a sentence; none where they can be drawn.
     ///
-    /// Looks at shapes and indices alone: numbers that are not finite are found where a file is read.
+    /// What it passes can be decoded.
     #[must_use]
     pub fn fault(&self, prt: &Prt) -> Option<String> {
         if let MapLight::Relightable { bands } = self.light
@@ -43,17 +43,16 @@ impl Maps {
         }
         self.sheets.iter().enumerate().find_map(|(i, sheet)| {
             let layers = &sheet.layers;
-            let numbers = [layers.width, layers.height, layers.count, layers.channels].map(u64::from);
-            let whole = numbers.into_iter().try_fold(1u64, u64::checked_mul);
             let sound = layers.width > 0 && layers.height > 0 && matches!(layers.channels, 1 | 3);
-            if !sound || !self.holds(layers.count) || whole != Some(layers.decode().len() as u64) {
-                let [width, height, count, channels] = numbers;
+            if !sound || !self.holds(layers.count) {
+                let (width, height, channels) = (layers.width, layers.height, layers.channels);
+                let (name, depth) = (self.basis.name(), self.light.depth());
                 return Some(format!(
-                    "light map {i} has {count} layers of {width} x {height} texels with {channels} channels, which do not make up {} \
-                     functions", self.basis.count()
+                    "light map {i} has {} layers of {width} x {height} texels and {channels} channels; {name} takes {depth} per function",
+                    layers.count
                 ));
             }
-            None
+            layers.fault().map(|(_, what)| format!("the layers of light map {i}: {what}"))
         })
     }
 
