@@ -3,7 +3,7 @@
 mod compare;
 mod handmade;
 
-use coeff_io::{MapLight, Prt};
+use coeff_io::{Layers, MapLight, Prt};
 use compare::{Distance, cpu_frame, distance, gpu};
 use handmade::{camera, environment, mapped, rotation, sphere_on_plane};
 use probe_io::Environment;
@@ -69,6 +69,21 @@ fn maps_that_shine_and_white_surfaces_agree_with_the_cpu() {
     let white = Frame { albedo: false, ..frame() };
     for distance in compare(&gpu, &prt, &environment(), &[frame(), white]) {
         assert!(distance.is_small(), "{distance:?}");
+    }
+}
+
+/// The floor's sheet holds one function of six: an ordinary light map in every basis.
+#[test]
+fn ordinary_light_maps_beside_directional_ones_agree_with_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let mut prt = matte(Basis::ModifiedH6, &RELIGHTABLE);
+    let layers = &mut prt.maps.as_mut().expect("maps").sheets[0].layers;
+    let values = layers.decode();
+    let held = 9 * (layers.width * layers.height * layers.channels) as usize;
+    *layers = Layers::exact([layers.width, layers.height, 9, layers.channels], &values[..held]);
+    let frames = [None, Some(Basis::Hl2)].map(|basis| Frame { basis, rotation: rotation(), ..frame() });
+    for (frame, distance) in frames.iter().zip(compare(&gpu, &prt, &environment(), &frames)) {
+        assert!(distance.is_small(), "{:?}: {distance:?}", frame.basis);
     }
 }
 

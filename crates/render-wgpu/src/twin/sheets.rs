@@ -29,7 +29,7 @@ fn draw(gpu: &Gpu, prt: &Prt) -> Image {
 
 fn strips(gpu: &Gpu, prt: &Prt) -> usize {
     let maps = prt.maps.as_ref().expect("maps");
-    Strip::all(gpu, &relight::pipeline(gpu, 3), maps, &maps.sheets[0].layers).expect("a small map").len()
+    Strip::all(gpu, &relight::pipeline(gpu, 3), maps, &maps.sheets[0]).expect("a small map").len()
 }
 
 #[test]
