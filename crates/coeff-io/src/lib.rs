@@ -37,6 +37,7 @@ mod texels;
 mod validate;
 mod validate_maps;
 mod validate_volume;
+mod visitor;
 mod volume;
 mod volume_header;
 mod volume_lookup;
@@ -58,6 +59,7 @@ pub use record::{Achieved, BandChoice, Bounces, Effects, MapRecord, Quality, Ref
 pub use replace::replace;
 pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};
 pub use texels::Container;
+pub use visitor::VisitorError;
 pub use volume::{Node, Volume};
 pub use volume_header::VolumeHeader;
 pub use volume_lookup::{BEHIND, BIAS, Cell, LEAST_DEVIATION, Lookup, Weights, irradiance_at};

@@ -28,6 +28,7 @@ mod source;
 mod timed;
 mod usage;
 mod uv;
+mod visitor;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
