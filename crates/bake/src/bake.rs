@@ -63,6 +63,18 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
 /// # Errors
 /// As [`bake`].
 pub fn bake_with(scene: &Scene, settings: &Settings, extras: &Extras, progress: ProgressFn<'_>) -> Result<Prt, Error> {
+    let (prt, ()) = bake_then(scene, settings, extras, progress, |done, prt| done.add(extras, prt))?;
+    Ok(prt)
+}
+
+/// Bakes the vertices, and hands what is known by then to `then`.
+pub(crate) fn bake_then<T>(
+    scene: &Scene,
+    settings: &Settings,
+    extras: &Extras,
+    progress: ProgressFn<'_>,
+    then: impl FnOnce(&Done<'_>, &mut Prt) -> Result<T, Error>,
+) -> Result<(Prt, T), Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, progress)?;
     let prepared = prepare(scene, settings, extras)?;
@@ -84,9 +96,9 @@ pub fn bake_with(scene: &Scene, settings: &Settings, extras: &Extras, progress: 
         permanent: receivers.permanent as u32,
         worth: NEAR_WORTH * tolerance(settings.quality),
     };
-    let mut prt = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene, extras)?;
+    let (mut prt, more) = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene, extras, then)?;
     prt.achieved.effects = account(scene, &prt, traced.len() as u64);
-    Ok(prt)
+    Ok((prt, more))
 }
 
 /// The scene as it is baked; an empty one is refused.
@@ -143,7 +155,12 @@ impl<'a> Run<'a> {
         Ok(run)
     }
 
-    fn finish(mut self, scene: &Scene, extras: &Extras) -> Result<Prt, Error> {
+    fn finish<T>(
+        mut self,
+        scene: &Scene,
+        extras: &Extras,
+        then: impl FnOnce(&Done<'_>, &mut Prt) -> Result<T, Error>,
+    ) -> Result<(Prt, T), Error> {
         let all = (0..self.receivers.list.len() as u32).collect();
         self.room = self.settings.memory.saturating_sub(self.field_bytes());
         let mut chunks = self.first_pass(all, Stage::Visibility)?;
@@ -160,6 +177,8 @@ impl<'a> Run<'a> {
             transfer.grow(self.receivers.list.len());
             self.bounce(&chunks, &repair, &mut transfer)?;
         }
+        // What follows needs the memory.
+        drop(chunks);
         let mut openness: Vec<f32> = self.findings[..self.receivers.permanent].iter().map(|f| f.openness).collect();
         repair.apply_scalar(&mut openness);
         if openness.iter().all(|&o| o >= 1.0) {
@@ -173,8 +192,8 @@ impl<'a> Run<'a> {
             self.settings,
             Baked { transfer: &transfer, openness, plan, achieved, extras },
         );
-        self.done(scene, &transfer, extras).add(extras, &mut prt)?;
-        Ok(prt)
+        let more = then(&self.done(scene, &transfer, extras), &mut prt)?;
+        Ok((prt, more))
     }
 
     fn done<'b>(&'b self, scene: &'b Scene, transfer: &'b Field, extras: &'b Extras) -> Done<'b> {

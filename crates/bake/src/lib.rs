@@ -43,7 +43,7 @@ mod volume;
 mod world;
 
 pub use crate::bake::{ProgressFn, bake, bake_with, plan, plan_with};
-pub use crate::maps::{MapSettings, SheetSettings};
+pub use crate::maps::{Directional, DirectionalTexel, MapSettings, SheetSettings, directional};
 pub use crate::volume::{VolumePlace, VolumeSettings, VolumeSteps};
 pub use error::Error;
 pub use extras::{Extras, FixedLight};

@@ -3,7 +3,9 @@
 //! A texel is a receiver like a vertex: the same rays, the same rule for their number. What it sees is kept over world normals until
 //! seams are stitched, then turned into the tangent frame and converted to the basis.
 
+mod directional;
 mod frame;
+mod join;
 mod plate;
 mod stitch;
 
@@ -15,15 +17,13 @@ use crate::gather::Worker;
 use crate::progress::Stage;
 use crate::receivers::{Receiver, morton_order};
 use crate::repair::is_inside;
-use coeff_io::{Coding, Encoding, Layers, MapLight, Maps, Prt, Sheet, curves};
+use coeff_io::{Coding, Encoded, Encoding, Layers, MapLight, MapRecord, Maps, Prt, Sheet, curves};
 use frame::{Converter, TangentFrame};
-use glam::Vec2;
-use plate::{NONE, Plate};
+use plate::Plate;
 use rayon::prelude::*;
-use scene::lightmap::{Charts, Texel, seams, texels};
+use scene::lightmap::{Charts, Texel, texels};
 use sh_math::Bands;
 use sh_math::hemisphere::Basis;
-use stitch::{Agreement, stitch};
 
 /// Most texels along a side of a sheet.
 const MAX_SIDE: u32 = 8192;
@@ -31,8 +31,8 @@ const MAX_SIDE: u32 = 8192;
 const MAX_DILATION: u32 = 64;
 /// Texels that a thread takes at a time.
 const CHUNK: usize = 64;
-/// Look-ups to a texel along a seam.
-const PER_TEXEL: f32 = 2.0;
+
+pub use directional::{Directional, DirectionalTexel, directional};
 
 /// What maps are wanted.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,6 +68,9 @@ struct Gathered {
     plate: Plate,
     /// Of each slot, where a surface is.
     frames: Vec<TangentFrame>,
+    /// The same: estimated error.
+    errors: Vec<f32>,
+    record: MapRecord,
 }
 
 /// Bands over normals that are kept until the conversion: three, as the paper has them, where they can be relit, and five where there is
@@ -85,28 +88,35 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     let mut first_index = 0;
     let mut sheets = Vec::new();
     for sheet in &settings.sheets {
-        sheets.push(gather(done, &arrivals, sheet, first_index, prt)?);
+        sheets.push(gather(done, &arrivals, sheet, first_index)?);
         first_index += sheet.width * sheet.height;
     }
     for gathered in &mut sheets {
-        gathered.plate.mend();
+        gathered.record.unfilled = gathered.plate.mend() as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
     }
     if settings.stitch && settings.dilation > 0 {
-        stitch_all(done, settings, &mut sheets);
+        join::stitch_all(done, settings, &mut sheets);
     }
     let mut sheet_of_mesh = vec![None; prt.meshes.len()];
     for (index, sheet) in (0..).zip(&settings.sheets) {
         sheet.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(index));
     }
+    let mut record = summed(&sheets);
     let light = done.map_light();
     let finish = |(mut gathered, sheet): (Gathered, &SheetSettings)| {
         (1..settings.dilation).for_each(|_| gathered.plate.dilate());
         let held = if sheet.directional { settings.basis } else { settings.basis.cut(1).unwrap_or(settings.basis) };
         let values = layers(&gathered.plate, &gathered.frames, &Converter::new(held, functions), shape);
-        Sheet { layers: encoded(&gathered.plate, &values, shape, held, &light, settings.encoding) }
+        let encoded = encoded(&gathered.plate, &values, shape, held, &light, settings.encoding);
+        record.clipped += encoded.clipped;
+        record.negative += encoded.negative;
+        Sheet { layers: encoded.layers }
     };
-    let sheets = sheets.into_iter().zip(&settings.sheets).map(finish).collect();
+    let sheets: Vec<Sheet> = sheets.into_iter().zip(&settings.sheets).map(finish).collect();
+    prt.achieved.visibility_rays += record.rays[0];
+    prt.achieved.bounce_rays += record.rays[1];
+    prt.achieved.maps = Some(record);
     Ok(Maps { basis: settings.basis, light, sheets, sheet_of_mesh })
 }
 
@@ -140,7 +150,6 @@ fn gather(
     arrivals: &Arrivals<'_>,
     sheet: &SheetSettings,
     first_index: u32,
-    prt: &mut Prt,
 ) -> Result<Gathered, Error> {
     let touched = texels(done.scene, &sheet.meshes, sheet.width, sheet.height);
     let shape = arrivals.shape();
@@ -153,23 +162,42 @@ fn gather(
         first_chart[m + 1] = first_chart[m] + chart.count;
     }
     let mut plate = Plate::empty([sheet.width as usize, sheet.height as usize], shape.len());
-    let mut frames = Vec::new();
+    let (mut frames, mut errors, mut record) = (Vec::new(), Vec::new(), MapRecord::default());
     for ((texel, point), arrival) in touched.iter().zip(&points).zip(found) {
         let place = texel.row as usize * plate.width + texel.column as usize;
         let chart = first_chart[texel.mesh as usize] + charts[texel.mesh as usize].of_triangle[texel.triangle as usize];
-        prt.achieved.visibility_rays += arrival.visibility_rays;
-        prt.achieved.bounce_rays += arrival.bounce_rays;
+        record.rays[0] += arrival.visibility_rays;
+        record.rays[1] += arrival.bounce_rays;
         if is_inside(arrival.openness, arrival.inside_share) || !point.sound {
             plate.owner[place] = chart;
+            record.inside += 1;
             continue;
         }
         plate.add_slot(place, chart);
+        errors.push(arrival.error);
         plate.values.extend_from_slice(&arrival.values);
         let mesh = &done.scene.meshes[texel.mesh as usize];
         frames.push(TangentFrame::at(mesh, texel.triangle as usize, texel.barycentrics, point.normal));
     }
     plate.values.par_chunks_mut(shape.len().max(1)).for_each(|row| to_irradiance(row, shape));
-    Ok(Gathered { plate, frames })
+    record.texels = touched.len() as u64;
+    Ok(Gathered { plate, frames, errors, record })
+}
+
+/// What all sheets took and reached.
+fn summed(sheets: &[Gathered]) -> MapRecord {
+    let mut all = MapRecord::default();
+    for MapRecord { texels, inside, unfilled, rays, .. } in sheets.iter().map(|sheet| sheet.record) {
+        all.texels += texels;
+        all.inside += inside;
+        all.unfilled += unfilled;
+        all.rays = [all.rays[0] + rays[0], all.rays[1] + rays[1]];
+    }
+    let mut errors: Vec<f32> = sheets.iter().flat_map(|sheet| &sheet.errors).copied().collect();
+    errors.sort_by(f32::total_cmp);
+    let at = |share: f64| errors.get((errors.len().saturating_sub(1) as f64 * share) as usize).copied().unwrap_or(0.0);
+    all.error = [at(0.5), at(0.95), at(1.0)];
+    all
 }
 
 fn check_memory(done: &Done<'_>, texels: usize, shape: Shape) -> Result<(), Error> {
@@ -195,6 +223,7 @@ struct Kept {
     values: Vec<f32>,
     openness: f32,
     inside_share: f32,
+    error: f32,
     visibility_rays: u64,
     bounce_rays: u64,
 }
@@ -222,6 +251,7 @@ fn arrive(
                     values: a.values,
                     openness: a.openness,
                     inside_share: a.inside_share,
+                    error: a.error,
                     visibility_rays: a.visibility_rays,
                     bounce_rays: a.bounce_rays,
                 };
@@ -234,71 +264,6 @@ fn arrive(
     let mut all: Vec<(u32, Kept)> = chunks.into_iter().flatten().collect();
     all.sort_unstable_by_key(|(id, _)| *id);
     Ok(all.into_iter().map(|(_, kept)| kept).collect())
-}
-
-/// Makes both sides of every seam between the meshes of all sheets agree.
-fn stitch_all(done: &Done<'_>, settings: &MapSettings, sheets: &mut [Gathered]) {
-    let mut sheet_of = vec![None; done.scene.meshes.len()];
-    for (index, sheet) in settings.sheets.iter().enumerate() {
-        sheet.meshes.iter().for_each(|&mesh| sheet_of[mesh] = Some(index));
-    }
-    let meshes: Vec<usize> = (0..sheet_of.len()).filter(|&mesh| sheet_of[mesh].is_some()).collect();
-    let mut first_slot = vec![0u32];
-    for sheet in sheets.iter() {
-        first_slot.push(first_slot[first_slot.len() - 1] + sheet.plate.slots() as u32);
-    }
-    let look_up = |mesh: u32, uv: Vec2| -> Agreement {
-        let sheet = sheet_of[mesh as usize].expect("only meshes with a sheet");
-        bilinear(&sheets[sheet].plate, uv)
-            .into_iter()
-            .map(|(slot, weight)| (slot + first_slot[sheet], weight))
-            .collect()
-    };
-    let mut agreements = Vec::new();
-    for seam in seams(done.scene, &meshes) {
-        let length = |side: &scene::lightmap::SeamSide| {
-            let plate = &sheets[sheet_of[side.mesh as usize].expect("only meshes with a sheet")].plate;
-            ((side.ends[1] - side.ends[0]) * Vec2::new(plate.width as f32, plate.height as f32)).length()
-        };
-        let points =
-            (PER_TEXEL * length(&seam.sides[0]).max(length(&seam.sides[1]))).ceil().clamp(1.0, 65_536.0) as u32;
-        for point in 0..points {
-            let along = (point as f32 + 0.5) / points as f32;
-            let [left, right] = seam.sides.map(|side| look_up(side.mesh, side.ends[0].lerp(side.ends[1], along)));
-            if !left.is_empty() && !right.is_empty() {
-                agreements.push(left.into_iter().chain(right.into_iter().map(|(slot, w)| (slot, -w))).collect());
-            }
-        }
-    }
-    let Some(row_len) = sheets.first().map(|sheet| sheet.plate.row_len) else { return };
-    let mut values: Vec<f32> = sheets.iter_mut().flat_map(|sheet| std::mem::take(&mut sheet.plate.values)).collect();
-    stitch(&agreements, row_len, &mut values);
-    let mut rest = &values[..];
-    for sheet in sheets {
-        let (own, others) = rest.split_at(sheet.plate.slots() * row_len);
-        sheet.plate.values = own.to_vec();
-        rest = others;
-    }
-}
-
-/// Slots that the filter reads at a point of a sheet, with weights that sum to 1; none where one is empty.
-fn bilinear(plate: &Plate, uv: Vec2) -> Agreement {
-    let size = Vec2::new(plate.width as f32, plate.height as f32);
-    let at = (uv * size - 0.5).clamp(Vec2::ZERO, size - 1.0);
-    let (low, part) = (at.floor(), at - at.floor());
-    let mut out = Agreement::new();
-    for (dx, wx) in [(0, 1.0 - part.x), (1, part.x)] {
-        for (dy, wy) in [(0, 1.0 - part.y), (1, part.y)] {
-            if wx * wy > 0.0 {
-                let texel = (low.y as usize + dy) * plate.width + low.x as usize + dx;
-                match plate.slot_of[texel] {
-                    NONE => return Agreement::new(),
-                    slot => out.push((slot, wx * wy)),
-                }
-            }
-        }
-    }
-    out
 }
 
 /// The numbers of the file: `[function][coefficient of the light]` pictures.
@@ -320,10 +285,10 @@ fn layers(plate: &Plate, frames: &[TangentFrame], converter: &Converter, shape: 
 }
 
 /// The numbers as the file holds them, with a range of its own for each chart where that is asked for.
-fn encoded(plate: &Plate, values: &[f32], shape: Shape, basis: Basis, light: &MapLight, encoding: Encoding) -> Layers {
+fn encoded(plate: &Plate, values: &[f32], shape: Shape, basis: Basis, light: &MapLight, encoding: Encoding) -> Encoded {
     let count = basis.count() * shape.depth;
     let curves = curves(basis, light);
     let coding = Coding { charts: &plate.owner, curves: &curves, ..Coding::plain(encoding) };
     let shape = [plate.width as u32, plate.height as u32, count as u32, shape.channels as u32];
-    Layers::encode(shape, values, &coding).layers
+    Layers::encode(shape, values, &coding)
 }

@@ -223,6 +223,31 @@ fn relit_equals_baked_in() {
     assert!(difference(&other) > 0.1, "another light must show: {}", difference(&other));
 }
 
+/// What bases are judged by, at the surface's own normal, is the ordinary light map of the same bake.
+#[test]
+fn harmonics_hold_the_light_map() {
+    let (scene, sheet) = unwrapped(grey("cornell-box", 0.6), 40);
+    let (asked, light) = (fixed(3, Sampler::OwenSobol, 128, 1), fixed_light(uneven(3)));
+    let quiet = |_: &bake::Progress| ControlFlow::Continue(());
+    let found = bake::directional(&scene, &asked, std::slice::from_ref(&sheet), &light, &quiet).expect("it bakes");
+    let plain = MapSettings { stitch: false, ..settings(Basis::ModifiedH1, &sheet) };
+    let prt = baked(&scene, &asked, plain, Some(light));
+    let lit = maps(&prt).sheets[0].lit(maps(&prt), &[]);
+    let worst = |normal: Vec3| {
+        let mut harmonics = [0.0; 25];
+        sh_math::evaluate(Bands::new(5).unwrap(), normal, &mut harmonics);
+        let difference = |texel: &bake::DirectionalTexel| {
+            let value: f32 = texel.coefficients.iter().zip(harmonics).map(|(c, y)| c[1] * y).sum();
+            let map = lit.functions[0][(texel.place[0] * sheet.width + texel.place[1]) as usize];
+            (value - Basis::ModifiedH1.reconstruct(&[map], Vec3::Z)[1]).abs()
+        };
+        found.texels.iter().map(difference).fold(0.0, f32::max)
+    };
+    assert!(found.texels.len() > 400 && found.rays > 10_000, "{} texels, {} rays", found.texels.len(), found.rays);
+    assert!(worst(Vec3::Z) < 1e-4, "{}", worst(Vec3::Z));
+    assert!(worst(Vec3::new(0.6, 0.0, 0.8)) > 0.1, "another normal must show");
+}
+
 #[test]
 fn threads_do_not_matter() {
     let (scene, sheet) = unwrapped(grey("cornell-box", 0.6), 40);

@@ -112,6 +112,9 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
     if achieved.error[2] > 0.0 {
         console.notice(&format!("worst {}", worst_place(prt)));
     }
+    if let Some(maps) = &achieved.maps {
+        console.notice(&light_maps(maps, prt.settings.quality));
+    }
     let repairs = achieved.repairs;
     if repairs.inside + repairs.bad_normals > 0 {
         let (inside, normals) = (repairs.inside, repairs.bad_normals);
@@ -121,6 +124,22 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         ));
     }
     console.notice(&format!("wrote {}", options.output.display()));
+}
+
+/// What light maps took and reached, in words.
+pub(crate) fn light_maps(maps: &coeff_io::MapRecord, quality: Quality) -> String {
+    let mut text = format!("light maps: {} texels, {}", maps.texels, error(quality, maps.error));
+    for (count, what) in [
+        (maps.inside, "inside of bodies, filled from their chart"),
+        (maps.unfilled, "with nothing to fill them, black"),
+        (maps.clipped, "numbers clipped by the encoding"),
+        (maps.negative, "negative numbers set to 0"),
+    ] {
+        if count > 0 {
+            text.push_str(&format!("; {count} {what}"));
+        }
+    }
+    text
 }
 
 /// Where the receiver with the worst error stands.

@@ -36,7 +36,7 @@ impl TangentFrame {
     }
 
     /// Turns coefficients over world normals into those over normals of the frame, `[function][column]` with `columns` numbers each.
-    fn turn(&self, functions: Bands, values: &mut [f32], columns: usize) {
+    pub(crate) fn turn(&self, functions: Bands, values: &mut [f32], columns: usize) {
         Rotation::from_matrix(functions, self.axes.transpose().as_dmat3()).apply_interleaved(values, columns);
         if self.mirrored {
             for (k, row) in values.chunks_exact_mut(columns).enumerate() {
@@ -59,7 +59,7 @@ pub(crate) struct Converter {
 }
 
 /// Most harmonics that are converted: 5 bands.
-const HARMONICS: usize = 25;
+pub(crate) const HARMONICS: usize = 25;
 
 impl Converter {
     /// # Panics

@@ -1,0 +1,76 @@
+//! Where the light of sheets has to agree: look-ups on both sides of every seam.
+
+use super::plate::{NONE, Plate};
+use super::stitch::{Agreement, stitch};
+use super::{Gathered, MapSettings};
+use crate::extras::Done;
+use glam::Vec2;
+use scene::lightmap::seams;
+
+/// Look-ups to a texel along a seam.
+const PER_TEXEL: f32 = 2.0;
+
+/// Makes both sides of every seam between the meshes of all sheets agree.
+pub(super) fn stitch_all(done: &Done<'_>, settings: &MapSettings, sheets: &mut [Gathered]) {
+    let mut sheet_of = vec![None; done.scene.meshes.len()];
+    for (index, sheet) in settings.sheets.iter().enumerate() {
+        sheet.meshes.iter().for_each(|&mesh| sheet_of[mesh] = Some(index));
+    }
+    let meshes: Vec<usize> = (0..sheet_of.len()).filter(|&mesh| sheet_of[mesh].is_some()).collect();
+    let mut first_slot = vec![0u32];
+    for sheet in sheets.iter() {
+        first_slot.push(first_slot[first_slot.len() - 1] + sheet.plate.slots() as u32);
+    }
+    let look_up = |mesh: u32, uv: Vec2| -> Agreement {
+        let sheet = sheet_of[mesh as usize].expect("only meshes with a sheet");
+        bilinear(&sheets[sheet].plate, uv)
+            .into_iter()
+            .map(|(slot, weight)| (slot + first_slot[sheet], weight))
+            .collect()
+    };
+    let mut agreements = Vec::new();
+    for seam in seams(done.scene, &meshes) {
+        let length = |side: &scene::lightmap::SeamSide| {
+            let plate = &sheets[sheet_of[side.mesh as usize].expect("only meshes with a sheet")].plate;
+            ((side.ends[1] - side.ends[0]) * Vec2::new(plate.width as f32, plate.height as f32)).length()
+        };
+        let points =
+            (PER_TEXEL * length(&seam.sides[0]).max(length(&seam.sides[1]))).ceil().clamp(1.0, 65_536.0) as u32;
+        for point in 0..points {
+            let along = (point as f32 + 0.5) / points as f32;
+            let [left, right] = seam.sides.map(|side| look_up(side.mesh, side.ends[0].lerp(side.ends[1], along)));
+            if !left.is_empty() && !right.is_empty() {
+                agreements.push(left.into_iter().chain(right.into_iter().map(|(slot, w)| (slot, -w))).collect());
+            }
+        }
+    }
+    let Some(row_len) = sheets.first().map(|sheet| sheet.plate.row_len) else { return };
+    let mut values: Vec<f32> = sheets.iter_mut().flat_map(|sheet| std::mem::take(&mut sheet.plate.values)).collect();
+    stitch(&agreements, row_len, &mut values);
+    let mut rest = &values[..];
+    for sheet in sheets {
+        let (own, others) = rest.split_at(sheet.plate.slots() * row_len);
+        sheet.plate.values = own.to_vec();
+        rest = others;
+    }
+}
+
+/// Slots that the filter reads at a point of a sheet, with weights that sum to 1; none where one is empty.
+fn bilinear(plate: &Plate, uv: Vec2) -> Agreement {
+    let size = Vec2::new(plate.width as f32, plate.height as f32);
+    let at = (uv * size - 0.5).clamp(Vec2::ZERO, size - 1.0);
+    let (low, part) = (at.floor(), at - at.floor());
+    let mut out = Agreement::new();
+    for (dx, wx) in [(0, 1.0 - part.x), (1, part.x)] {
+        for (dy, wy) in [(0, 1.0 - part.y), (1, part.y)] {
+            if wx * wy > 0.0 {
+                let texel = (low.y as usize + dy) * plate.width + low.x as usize + dx;
+                match plate.slot_of[texel] {
+                    NONE => return Agreement::new(),
+                    slot => out.push((slot, wx * wy)),
+                }
+            }
+        }
+    }
+    out
+}
