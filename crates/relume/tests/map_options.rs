@@ -1,4 +1,4 @@
-//! The options of light maps on a file that has none.
+//! How light maps are looked at, and what is said where there are none.
 
 mod command;
 
@@ -38,4 +38,33 @@ fn without_albedo_the_light_alone_is_drawn() {
     };
     let (with, without) = (dark("on"), dark("off"));
     assert!(with > 200 && without == 0, "{with} pixels of the plane with albedo, {without} without");
+}
+
+/// Maps that hold the light of one probe can be drawn in any basis, but not turned.
+#[test]
+fn fixed_maps_are_drawn_as_they_lay() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let light = ["--light", "fixed", "--probe", "builtin:sky"];
+    let bake = ["bake", "builtin:plane", "-o", "a.prt", "--bands", "3", "--storage", "texture", "--texels", "16"];
+    let output = relume(folder, &[&bake[..], &light].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", complaint(&output));
+    for options in [["--rotate", "10,0,0"], ["--frames", "2"]] {
+        let output = relume(folder, &[&RENDER[..], &options].concat());
+        let text = complaint(&output);
+        assert_eq!(output.status.code(), Some(2), "{options:?}: {text}");
+        assert!(text.contains("`builtin:sky`") && text.lines().count() == 1, "{options:?}: {text}");
+        assert_eq!(std::fs::read_dir(folder).unwrap().count(), 1, "nothing is drawn");
+    }
+    let picture = |options: &[&str]| {
+        let output = relume(folder, &[&RENDER[..], options].concat());
+        let text = complaint(&output);
+        assert_eq!(output.status.code(), Some(0), "{options:?}: {text}");
+        assert!(text.contains("hold the light of builtin:sky"), "another probe must be told: {text}");
+        probe_io::read_picture(&folder.join("a.exr")).unwrap().2
+    };
+    let own = picture(&[]);
+    // Without normal maps the sheet is an ordinary light map, the same in every basis.
+    assert!(own == picture(&["--basis", "hl2"]));
+    assert!(own != picture(&["--albedo", "off"]));
 }

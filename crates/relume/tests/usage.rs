@@ -46,7 +46,7 @@ fn wrong_usage_ends_with_2_and_a_reason() {
         (&["bake", "builtin:plane"], "--output"),
         (&["bake", "builtin:nowhere", "-o", "a.prt"], "atrium"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--rays", "9", "--error", "0.1"], "cannot be used with"),
-        (&["bake", "builtin:plane", "-o", "a.prt", "--storage", "texture"], "not available yet"),
+        (&["bake", "builtin:plane", "-o", "a.prt", "--storage", "cloud"], "cloud"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--bands", "0"], "--bands"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--bands", "many"], "many"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--effects", "magic"], "magic"),

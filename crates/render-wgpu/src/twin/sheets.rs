@@ -2,7 +2,7 @@
 
 use super::gpu;
 use crate::strip::Strip;
-use crate::{Frame, Gpu, Image, relight};
+use crate::{Error, Frame, Gpu, Image, relight};
 use coeff_io::{Layers, MapLight, Prt};
 use sh_math::hemisphere::Basis;
 
@@ -51,4 +51,24 @@ fn strips_can_fail() {
     values[row * 8..row * 9].fill(0.0);
     *layers = Layers::exact([layers.width, layers.height, layers.count, layers.channels], &values);
     assert!(draw(&gpu, &prt) != draw(&small(&gpu), &other), "the last row of the first layer must be seen");
+}
+
+#[test]
+fn maps_beyond_the_gpu_are_refused() {
+    let Some(mut gpu) = gpu() else { return };
+    gpu.limits.max_texture_array_layers = 4;
+    let frame = Frame::plain(handmade::camera(), 8, 8);
+    let draw = |basis| {
+        let frame = Frame { basis, ..frame.clone() };
+        crate::render(&gpu, &scene(), &handmade::environment(), &frame)
+    };
+    let refused = draw(None).expect_err("six layers do not fit four");
+    assert!(matches!(&refused, Error::TooLarge { needed: 6, limit: 4, .. }), "{refused}");
+    assert!(refused.to_string().contains("light map 0"), "{refused}");
+    assert!(draw(Some(Basis::H4)).is_ok(), "four do");
+    gpu.limits.max_storage_buffer_binding_size = 900;
+    let (prt, pipeline) = (scene(), relight::pipeline(&gpu, 3));
+    let maps = prt.maps.as_ref().expect("maps");
+    let refused = Strip::all(&gpu, &pipeline, maps, &maps.sheets[0]).expect_err("a row is 936 bytes");
+    assert!(matches!(refused, Error::TooLarge { needed: 936, limit: 900, .. }), "{refused}");
 }
