@@ -1,6 +1,7 @@
 //! `relume bake`: a scene becomes a `.prt` file.
 
 use crate::console::{Console, Progress};
+use crate::extras::ExtrasOptions;
 use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
@@ -19,6 +20,7 @@ Examples:
   relume bake atrium.glb -o atrium.prt --bands auto:8 --probe evening.hdr
   relume bake scan.obj -o scan.prt --rays 256 --bounces 0 --memory 2G
   relume bake city.glb -o city.prt --time 10m
+  relume bake house.glb -o house.prt --volume 0.5m --volume-levels 1
 
 Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest result so far stays.";
 
@@ -39,6 +41,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "PROBE", value_parser = source::probe)]
     probe: Option<ProbeSource>,
     #[command(flatten)]
+    extras: ExtrasOptions,
+    #[command(flatten)]
     read: ReadOptions,
 }
 
@@ -46,6 +50,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
     let settings =
         Settings { time: options.time, ..options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))? };
+    let extras = options.extras.extras(settings.bands, &options.read, console)?;
     output::check(&options.output)?;
     let scene = options.scene.load(console)?;
     interrupt::watch()?;
@@ -55,7 +60,8 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let prt = match settings.time {
         Some(seconds) => timed::bake(&scene, &settings, Duration::from_secs_f32(seconds), &write, console)?,
         None => {
-            let prt = bake::bake(&scene, &settings, &watched(&console.progress(), None)).map_err(fault)?;
+            let prt =
+                bake::bake_with(&scene, &settings, &extras, &watched(&console.progress(), None)).map_err(fault)?;
             write(&prt)?;
             prt
         }
@@ -110,6 +116,11 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         console.notice(&format!(
             "warning: {inside} vertices inside geometry, {normals} with bad normals; moved out or repaired from neighbours but for {left}"
         ));
+    }
+    if let Some(volume) = &prt.volume {
+        let poor = volume.validity.iter().filter(|&&validity| validity < 0.5).count();
+        let probes = volume.validity.len();
+        console.notice(&format!("volume: {probes} probes, {poor} of them inside of bodies"));
     }
     console.notice(&format!("wrote {}", options.output.display()));
 }

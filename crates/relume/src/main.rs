@@ -8,6 +8,7 @@ mod console;
 mod cost;
 mod draw;
 mod export;
+mod extras;
 mod inspect;
 mod interrupt;
 mod lens;
@@ -24,6 +25,7 @@ mod source;
 mod timed;
 mod usage;
 mod uv;
+mod volume;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
