@@ -157,7 +157,11 @@ fn fixed_and_relit_agree() {
 #[test]
 fn auto_fills_the_scene() {
     let scene = scene::builtin("cornell-box").expect("builtin");
-    let volume = bake_volume(&scene, &fixed(1, Sampler::OwenSobol, 32, 0), &VolumeSettings::standard());
+    let volume = bake_volume(
+        &scene,
+        &fixed(1, Sampler::OwenSobol, 32, 0),
+        &VolumeSettings { resolution: 8, ..VolumeSettings::standard() },
+    );
     assert_eq!(volume.cells, [16; 3]);
     assert_eq!(volume.validity.len(), 17 * 17 * 17);
     assert!(volume.validity.iter().filter(|&&v| v > 0.9).count() > 4500);

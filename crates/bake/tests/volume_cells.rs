@@ -164,6 +164,23 @@ fn what_cannot_be_is_refused() {
     assert!(sentence(&little, VolumeSettings::standard()).contains("probes needs"));
 }
 
+/// Where nothing blocks light by request, every probe is open, also within a body; rays tell otherwise.
+#[test]
+fn effects_are_obeyed() {
+    let scene = scene::builtin("furnace-box").expect("builtin");
+    let inside = boxed(Vec3::splat(-0.2), Vec3::splat(0.2), [2; 3]);
+    let settings = fixed(3, Sampler::OwenSobol, 64, 0);
+    let none = Settings { effects: coeff_io::Effects::Only(Vec::new()), ..settings.clone() };
+    let value = |settings: &Settings| {
+        let volume = bake_volume(&scene, settings, &VolumeSettings { resolution: 8, ..inside.clone() });
+        (at_normal(&lit(&volume, 0, &white(3)), Vec3::Y)[0], volume.validity[0], volume.distances[0] / volume.reach)
+    };
+    let (open, validity, distance) = value(&none);
+    assert!((open - 1.0).abs() < 1e-5 && validity == 1.0 && distance == 1.0, "{open}, {validity}, {distance}");
+    let (buried, validity, distance) = value(&settings);
+    assert!(buried == 0.0 && validity == 0.0 && distance < 1.0 + 1e-6, "can fail: {buried}, {validity}, {distance}");
+}
+
 #[test]
 fn a_cancel_is_heard() {
     let scene = scene::builtin("cornell-box").expect("builtin");

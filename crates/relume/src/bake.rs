@@ -22,6 +22,7 @@ Examples:
   relume bake city.glb -o city.prt --time 10m
   relume bake house.glb -o house.prt --storage texture --texels 1024 --basis modified-h6
   relume bake house.glb -o house.prt --storage texture --probe noon.hdr --light fixed --window auto --encoding bc6h
+  relume bake house.glb -o house.prt --volume 0.5m --volume-levels 1
 
 Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest result so far stays.";
 
@@ -122,6 +123,11 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         console.notice(&format!(
             "warning: {inside} vertices inside geometry, {normals} with bad normals; moved out or repaired from neighbours but for {left}"
         ));
+    }
+    if let Some(volume) = &prt.volume {
+        let poor = volume.validity.iter().filter(|&&validity| validity < 0.5).count();
+        let probes = volume.validity.len();
+        console.notice(&format!("volume: {probes} probes, {poor} of them inside of bodies"));
     }
     console.notice(&format!("wrote {}", options.output.display()));
 }

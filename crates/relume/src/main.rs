@@ -29,6 +29,7 @@ mod timed;
 mod usage;
 mod uv;
 mod visitor;
+mod volume;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
