@@ -17,7 +17,7 @@ use crate::gather::Worker;
 use crate::progress::Stage;
 use crate::receivers::{Receiver, morton_order};
 use crate::repair::is_inside;
-use coeff_io::{Coding, Encoding, Layers, MapLight, Maps, Prt, Sheet, curves};
+use coeff_io::{Coding, Encoded, Encoding, Layers, MapLight, MapRecord, Maps, Prt, Sheet, curves};
 use frame::{Converter, TangentFrame};
 use plate::Plate;
 use rayon::prelude::*;
@@ -68,6 +68,9 @@ struct Gathered {
     plate: Plate,
     /// Of each slot, where a surface is.
     frames: Vec<TangentFrame>,
+    /// The same: estimated error.
+    errors: Vec<f32>,
+    record: MapRecord,
 }
 
 /// Bands over normals that are kept until the conversion: three, as the paper has them, where they can be relit, and five where there is
@@ -85,11 +88,11 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     let mut first_index = 0;
     let mut sheets = Vec::new();
     for sheet in &settings.sheets {
-        sheets.push(gather(done, &arrivals, sheet, first_index, prt)?);
+        sheets.push(gather(done, &arrivals, sheet, first_index)?);
         first_index += sheet.width * sheet.height;
     }
     for gathered in &mut sheets {
-        gathered.plate.mend();
+        gathered.record.unfilled = gathered.plate.mend() as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
     }
     if settings.stitch && settings.dilation > 0 {
@@ -99,14 +102,21 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     for (index, sheet) in (0..).zip(&settings.sheets) {
         sheet.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(index));
     }
+    let mut record = summed(&sheets);
     let light = done.map_light();
     let finish = |(mut gathered, sheet): (Gathered, &SheetSettings)| {
         (1..settings.dilation).for_each(|_| gathered.plate.dilate());
         let held = if sheet.directional { settings.basis } else { settings.basis.cut(1).unwrap_or(settings.basis) };
         let values = layers(&gathered.plate, &gathered.frames, &Converter::new(held, functions), shape);
-        Sheet { layers: encoded(&gathered.plate, &values, shape, held, &light, settings.encoding) }
+        let encoded = encoded(&gathered.plate, &values, shape, held, &light, settings.encoding);
+        record.clipped += encoded.clipped;
+        record.negative += encoded.negative;
+        Sheet { layers: encoded.layers }
     };
-    let sheets = sheets.into_iter().zip(&settings.sheets).map(finish).collect();
+    let sheets: Vec<Sheet> = sheets.into_iter().zip(&settings.sheets).map(finish).collect();
+    prt.achieved.visibility_rays += record.rays[0];
+    prt.achieved.bounce_rays += record.rays[1];
+    prt.achieved.maps = Some(record);
     Ok(Maps { basis: settings.basis, light, sheets, sheet_of_mesh })
 }
 
@@ -140,7 +150,6 @@ fn gather(
     arrivals: &Arrivals<'_>,
     sheet: &SheetSettings,
     first_index: u32,
-    prt: &mut Prt,
 ) -> Result<Gathered, Error> {
     let touched = texels(done.scene, &sheet.meshes, sheet.width, sheet.height);
     let shape = arrivals.shape();
@@ -153,23 +162,42 @@ fn gather(
         first_chart[m + 1] = first_chart[m] + chart.count;
     }
     let mut plate = Plate::empty([sheet.width as usize, sheet.height as usize], shape.len());
-    let mut frames = Vec::new();
+    let (mut frames, mut errors, mut record) = (Vec::new(), Vec::new(), MapRecord::default());
     for ((texel, point), arrival) in touched.iter().zip(&points).zip(found) {
         let place = texel.row as usize * plate.width + texel.column as usize;
         let chart = first_chart[texel.mesh as usize] + charts[texel.mesh as usize].of_triangle[texel.triangle as usize];
-        prt.achieved.visibility_rays += arrival.visibility_rays;
-        prt.achieved.bounce_rays += arrival.bounce_rays;
+        record.rays[0] += arrival.visibility_rays;
+        record.rays[1] += arrival.bounce_rays;
         if is_inside(arrival.openness, arrival.inside_share) || !point.sound {
             plate.owner[place] = chart;
+            record.inside += 1;
             continue;
         }
         plate.add_slot(place, chart);
+        errors.push(arrival.error);
         plate.values.extend_from_slice(&arrival.values);
         let mesh = &done.scene.meshes[texel.mesh as usize];
         frames.push(TangentFrame::at(mesh, texel.triangle as usize, texel.barycentrics, point.normal));
     }
     plate.values.par_chunks_mut(shape.len().max(1)).for_each(|row| to_irradiance(row, shape));
-    Ok(Gathered { plate, frames })
+    record.texels = touched.len() as u64;
+    Ok(Gathered { plate, frames, errors, record })
+}
+
+/// What all sheets took and reached.
+fn summed(sheets: &[Gathered]) -> MapRecord {
+    let mut all = MapRecord::default();
+    for MapRecord { texels, inside, unfilled, rays, .. } in sheets.iter().map(|sheet| sheet.record) {
+        all.texels += texels;
+        all.inside += inside;
+        all.unfilled += unfilled;
+        all.rays = [all.rays[0] + rays[0], all.rays[1] + rays[1]];
+    }
+    let mut errors: Vec<f32> = sheets.iter().flat_map(|sheet| &sheet.errors).copied().collect();
+    errors.sort_by(f32::total_cmp);
+    let at = |share: f64| errors.get((errors.len().saturating_sub(1) as f64 * share) as usize).copied().unwrap_or(0.0);
+    all.error = [at(0.5), at(0.95), at(1.0)];
+    all
 }
 
 fn check_memory(done: &Done<'_>, texels: usize, shape: Shape) -> Result<(), Error> {
@@ -195,6 +223,7 @@ struct Kept {
     values: Vec<f32>,
     openness: f32,
     inside_share: f32,
+    error: f32,
     visibility_rays: u64,
     bounce_rays: u64,
 }
@@ -222,6 +251,7 @@ fn arrive(
                     values: a.values,
                     openness: a.openness,
                     inside_share: a.inside_share,
+                    error: a.error,
                     visibility_rays: a.visibility_rays,
                     bounce_rays: a.bounce_rays,
                 };
@@ -255,10 +285,10 @@ fn layers(plate: &Plate, frames: &[TangentFrame], converter: &Converter, shape: 
 }
 
 /// The numbers as the file holds them, with a range of its own for each chart where that is asked for.
-fn encoded(plate: &Plate, values: &[f32], shape: Shape, basis: Basis, light: &MapLight, encoding: Encoding) -> Layers {
+fn encoded(plate: &Plate, values: &[f32], shape: Shape, basis: Basis, light: &MapLight, encoding: Encoding) -> Encoded {
     let count = basis.count() * shape.depth;
     let curves = curves(basis, light);
     let coding = Coding { charts: &plate.owner, curves: &curves, ..Coding::plain(encoding) };
     let shape = [plate.width as u32, plate.height as u32, count as u32, shape.channels as u32];
-    Layers::encode(shape, values, &coding).layers
+    Layers::encode(shape, values, &coding)
 }

@@ -123,6 +123,14 @@ fn blocks<F: Format>(layers: &Layers) -> Option<Blocks<'_>> {
     Some(Blocks { bytes: layers.bytes.get(first..)?, layers: ranges })
 }
 
+/// What stands before the blocks of layers of so many channels: the inverse of [`Layers::blocks`].
+pub(crate) fn head(encoding: Encoding, channels: usize, layers: &[(Curve, [[f32; 2]; 3])]) -> Vec<u8> {
+    let own = if encoding == Encoding::Bc1 { Bc1::ranges(channels) } else { Bc6h::ranges(channels) };
+    let mut bytes: Vec<u8> = layers.iter().map(|(curve, _)| curve.to_byte()).collect();
+    bytes.extend(layers.iter().flat_map(|(_, ranges)| ranges.iter().take(own).flatten()).flat_map(|v| v.to_le_bytes()));
+    bytes
+}
+
 /// As [`Layers::fault`], of bytes whose length is right. Every block decodes to shares in finite numbers.
 pub(crate) fn fault<F: Format>(layers: &Layers) -> Option<(usize, String)> {
     let [ranges, first, _] = places::<F>(layers)?;
@@ -133,29 +141,28 @@ pub(crate) fn fault<F: Format>(layers: &Layers) -> Option<(usize, String)> {
     Some((ranges + 4 * place, "a range is not finite".into()))
 }
 
-/// As [`Layers::decode`].
-pub(crate) fn decode<F: Format>(layers: &Layers) -> Vec<f32> {
+/// As [`Layers::decode_layer`].
+pub(crate) fn decode<F: Format>(layers: &Layers, layer: usize) -> Vec<f32> {
     let [ranges, first, _] = places::<F>(layers).expect("the sizes fit into memory");
-    let (width, plane, channels) = (layers.width as usize, layers.plane(), layers.channels as usize);
-    let across = width.div_ceil(4);
-    let blocks_of_layer = across * (layers.height as usize).div_ceil(4);
-    let mut values = vec![0.0; plane * layers.count as usize * channels];
-    for (number, block) in layers.bytes[first..].chunks_exact(F::BYTES).enumerate() {
-        let (layer, place) = (number / blocks_of_layer, number % blocks_of_layer);
-        let curve = Curve::of_byte(layers.bytes[layer]).expect("the curve is known");
-        let texels = F::decode(block);
-        let own = F::ranges(channels);
-        for (i, shares) in texels.iter().enumerate() {
+    let (width, height, channels) = (layers.width as usize, layers.height as usize, layers.channels as usize);
+    let (across, own) = (width.div_ceil(4), F::ranges(channels));
+    let curve = Curve::of_byte(layers.bytes[layer]).expect("the curve is known");
+    let range = |channel: usize| {
+        let at = ranges + 8 * (layer * own + channel.min(own - 1));
+        [f32_at(&layers.bytes, at), f32_at(&layers.bytes, at + 4)]
+    };
+    let mut values = vec![0.0; layers.plane() * channels];
+    let size = across * height.div_ceil(4) * F::BYTES;
+    for (place, block) in layers.bytes[first + layer * size..][..size].chunks_exact(F::BYTES).enumerate() {
+        for (i, shares) in F::decode(block).iter().enumerate() {
             let (column, row) = (place % across * 4 + i % 4, place / across * 4 + i / 4);
-            if column >= width || row >= layers.height as usize {
+            if column >= width || row >= height {
                 continue;
             }
-            let at = (layer * plane + row * width + column) * channels;
+            let at = (row * width + column) * channels;
             for (channel, value) in values[at..at + channels].iter_mut().enumerate() {
-                let range = ranges + 8 * (layer * own + channel.min(own - 1));
-                let range = [f32_at(&layers.bytes, range), f32_at(&layers.bytes, range + 4)];
                 // One channel stands in all three; green has the most bits.
-                *value = curve.value(shares[if channels == 1 { 1 } else { channel }], range);
+                *value = curve.value(shares[if channels == 1 { 1 } else { channel }], range(channel));
             }
         }
     }

@@ -3,6 +3,7 @@
 use crate::block::{Bc1, Bc6h};
 use crate::{Encoding, Layers, MapLight, block, eight_bits};
 use half::f16;
+use serde::{Deserialize, Serialize};
 use sh_math::hemisphere::Basis;
 
 /// What [`Layers::encode`] is asked for.
@@ -31,7 +32,8 @@ impl Coding<'static> {
 }
 
 /// How codes of a layer follow its numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Curve {
     /// In even steps.
     Linear,
@@ -137,13 +139,16 @@ impl Layers {
     /// When the numbers are not as many as the shape says or not finite, or charts and curves are not as many as texels and layers.
     #[must_use]
     pub fn encode(shape: [u32; 4], values: &[f32], coding: &Coding) -> Encoded {
-        let exact = Self::exact(shape, values);
+        let [width, height, count, channels] = shape;
+        let expected = shape.map(|n| n as usize).iter().product::<usize>();
+        assert_eq!(values.len(), expected, "one value per layer, texel and channel");
         assert!(values.iter().all(|v| v.is_finite()), "coefficients are finite");
-        assert!(coding.charts.is_empty() || coding.charts.len() == exact.plane(), "one chart per texel");
-        assert!(coding.curves.is_empty() || coding.curves.len() == exact.count as usize, "one curve per layer");
-        let mut encoded = Encoded { layers: Self { encoding: coding.encoding, ..exact }, clipped: 0, negative: 0 };
+        let layers = Self { width, height, count, channels, encoding: coding.encoding, bytes: Vec::new() };
+        assert!(coding.charts.is_empty() || coding.charts.len() == layers.plane(), "one chart per texel");
+        assert!(coding.curves.is_empty() || coding.curves.len() == count as usize, "one curve per layer");
+        let mut encoded = Encoded { layers, clipped: 0, negative: 0 };
         match coding.encoding {
-            Encoding::F32 => {}
+            Encoding::F32 => encoded.layers = Self::exact(shape, values),
             Encoding::F16 => halves(&mut encoded, values),
             Encoding::U8 => eight_bits::encode(&mut encoded, values, coding),
             Encoding::Bc1 => block::encode::<Bc1>(&mut encoded, values, coding),

@@ -71,27 +71,24 @@ pub(crate) fn fault(layers: &Layers) -> Option<(usize, String)> {
     Some((places.charts + texel * places.wide, format!("texel {texel} is of a chart that does not exist")))
 }
 
-/// As [`Layers::decode`].
-pub(crate) fn decode(layers: &Layers) -> Vec<f32> {
+/// As [`Layers::decode_layer`].
+pub(crate) fn decode(layers: &Layers, layer: usize) -> Vec<f32> {
     let bytes = &layers.bytes;
     let charts = chart_count(bytes).expect("the bytes begin with the number of charts");
     let places = Places::of(layers, charts).expect("the sizes fit into memory");
     let (count, plane, channels) = (layers.count as usize, layers.plane(), layers.channels as usize);
-    let chart_of: Vec<Option<usize>> = (0..plane).map(|texel| places.chart(bytes, texel)).collect();
-    let mut values = vec![0.0; plane * count * channels];
-    let codes = &bytes[places.codes..places.end];
-    for layer in 0..count {
-        let curve = Curve::of_byte(bytes[places.curves + layer]).expect("the curve is known");
-        // Of a code its share of the range under the curve, so that no curve is evaluated per texel.
-        let shares: Vec<f32> = (0..=u8::MAX).map(|code| curve.value(f32::from(code) / 255.0, [0.0, 1.0])).collect();
-        for (texel, chart) in chart_of.iter().enumerate() {
-            let Some(chart) = chart else { continue };
-            let range = places.range(bytes, chart * count + layer);
-            let range = if curve == Curve::Srgb { [0.0, range[1]] } else { range };
-            let at = (layer * plane + texel) * channels;
-            for (value, code) in values[at..at + channels].iter_mut().zip(&codes[at..at + channels]) {
-                *value = Curve::Linear.value(shares[usize::from(*code)], range);
-            }
+    let curve = Curve::of_byte(bytes[places.curves + layer]).expect("the curve is known");
+    // Of a code its share of the range under the curve, so that no curve is evaluated per texel.
+    let shares: Vec<f32> = (0..=u8::MAX).map(|code| curve.value(f32::from(code) / 255.0, [0.0, 1.0])).collect();
+    let codes = &bytes[places.codes + layer * plane * channels..][..plane * channels];
+    let mut values = vec![0.0; plane * channels];
+    for texel in 0..plane {
+        let Some(chart) = places.chart(bytes, texel) else { continue };
+        let range = places.range(bytes, chart * count + layer);
+        let range = if curve == Curve::Srgb { [0.0, range[1]] } else { range };
+        let at = texel * channels;
+        for (value, code) in values[at..at + channels].iter_mut().zip(&codes[at..at + channels]) {
+            *value = Curve::Linear.value(shares[usize::from(*code)], range);
         }
     }
     values

@@ -1,4 +1,6 @@
-//! Coefficients for other programs: `.npy` and JSON.
+//! Coefficients for other programs: `.npy`, JSON and textures.
+
+pub use crate::export_textures::{maps, volume, volume_json};
 
 use crate::{Error, Prt, replace};
 use npyz::WriterBuilder;

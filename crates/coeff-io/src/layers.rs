@@ -26,6 +26,7 @@ pub struct Layers {
 
 /// How numbers of a layer are held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Encoding {
     /// Little-endian f32.
     F32,
@@ -112,12 +113,24 @@ impl Layers {
     /// When the bytes are not what sizes and encoding demand.
     #[must_use]
     pub fn decode(&self) -> Vec<f32> {
+        (0..self.count).flat_map(|layer| self.decode_layer(layer)).collect()
+    }
+
+    /// The numbers of one layer as f32: `[row][column][channel]`, for sheets whose numbers together would take much memory.
+    ///
+    /// # Panics
+    /// When there is no such layer, or the bytes are not what sizes and encoding demand.
+    #[must_use]
+    pub fn decode_layer(&self, layer: u32) -> Vec<f32> {
+        assert!(layer < self.count, "there are {} layers, not {layer}", self.count);
+        let numbers = self.plane() * self.channels as usize;
+        let part = |bytes: usize| self.bytes[layer as usize * numbers * bytes..][..numbers * bytes].chunks_exact(bytes);
         match self.encoding {
-            Encoding::F32 => self.bytes.chunks_exact(4).map(|b| f32_at(b, 0)).collect(),
-            Encoding::F16 => self.bytes.chunks_exact(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect(),
-            Encoding::U8 => eight_bits::decode(self),
-            Encoding::Bc1 => block::decode::<Bc1>(self),
-            Encoding::Bc6h => block::decode::<Bc6h>(self),
+            Encoding::F32 => part(4).map(|b| f32_at(b, 0)).collect(),
+            Encoding::F16 => part(2).map(|b| f16::from_le_bytes([b[0], b[1]]).to_f32()).collect(),
+            Encoding::U8 => eight_bits::decode(self, layer as usize),
+            Encoding::Bc1 => block::decode::<Bc1>(self, layer as usize),
+            Encoding::Bc6h => block::decode::<Bc6h>(self, layer as usize),
         }
     }
 }

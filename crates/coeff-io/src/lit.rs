@@ -1,6 +1,6 @@
 //! Light maps as renderers take them: whether they fit the rest of the file, in which basis they are drawn, and the change to it.
 
-use crate::{Lit, MapLight, Maps, Prt};
+use crate::{Lit, MapLight, Maps, Prt, Sheet};
 use glam::Quat;
 use sh_math::{Bands, Rgb, hemisphere::Basis};
 
@@ -19,7 +19,7 @@ impl Maps {
 
     /// What in the maps does not fit the rest of `prt`, or each other, in half a sentence; none where they can be drawn.
     ///
-    /// Looks at shapes and indices alone: numbers that are not finite are found where a file is read.
+    /// What it passes can be decoded.
     #[must_use]
     pub fn fault(&self, prt: &Prt) -> Option<String> {
         if let MapLight::Relightable { bands } = self.light
@@ -43,17 +43,16 @@ impl Maps {
         }
         self.sheets.iter().enumerate().find_map(|(i, sheet)| {
             let layers = &sheet.layers;
-            let numbers = [layers.width, layers.height, layers.count, layers.channels].map(u64::from);
-            let whole = numbers.into_iter().try_fold(1u64, u64::checked_mul);
             let sound = layers.width > 0 && layers.height > 0 && matches!(layers.channels, 1 | 3);
-            if !sound || !self.holds(layers.count) || whole != Some(layers.decode().len() as u64) {
-                let [width, height, count, channels] = numbers;
+            if !sound || !self.holds(layers.count) {
+                let (width, height, channels) = (layers.width, layers.height, layers.channels);
+                let (name, depth) = (self.basis.name(), self.light.depth());
                 return Some(format!(
-                    "light map {i} has {count} layers of {width} x {height} texels with {channels} channels, which do not make up {} \
-                     functions", self.basis.count()
+                    "light map {i} has {} layers of {width} x {height} texels and {channels} channels; {name} takes {depth} per function",
+                    layers.count
                 ));
             }
-            None
+            layers.fault().map(|(_, what)| format!("the layers of light map {i}: {what}"))
         })
     }
 
@@ -63,6 +62,31 @@ impl Maps {
         let depth = self.light.depth();
         let held = layers as usize / depth;
         layers as usize == held * depth && (held == self.basis.count() || self.basis.cut(held).is_some())
+    }
+
+    /// The functions that a sheet holds: those of the basis, or of its cut.
+    #[must_use]
+    pub fn held(&self, sheet: &Sheet) -> Basis {
+        let functions = sheet.layers.count as usize / self.light.depth();
+        self.basis.cut(functions).unwrap_or(self.basis)
+    }
+
+    /// The basis that a sheet which holds `held` is drawn in where `asked` is asked for: an ordinary light map, one function, stays what
+    /// it is, as no normal map lies upon it.
+    #[must_use]
+    pub fn shown(held: Basis, asked: Basis) -> Basis {
+        if held.count() == 1 { held } else { asked }
+    }
+
+    /// A sheet under a light in the basis that it is drawn in where `asked` is asked for.
+    #[must_use]
+    pub fn lit_in(&self, sheet: &Sheet, light: &Rgb, asked: Basis) -> (Basis, Lit) {
+        let held = self.held(sheet);
+        let shown = Self::shown(held, asked);
+        let mut lit = sheet.lit(self, &self.light_of(light).values);
+        // Functions that are not held came back as zeros.
+        lit.functions.truncate(held.count());
+        (shown, lit.changed(held, shown))
     }
 
     /// Whether any mesh shows a map.

@@ -23,6 +23,7 @@ pub struct Maps {
 
 /// What the coefficients of maps and volumes hold.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum MapLight {
     /// Light of one probe, as it lay: RGB per function.
     Fixed {
@@ -76,19 +77,19 @@ impl Sheet {
     #[must_use]
     pub fn lit(&self, maps: &Maps, light: &[[f32; 3]]) -> Lit {
         let (layers, depth) = (&self.layers, maps.light.depth());
-        let values = layers.decode();
         let plane = layers.width as usize * layers.height as usize;
         let channels = layers.channels as usize;
         let rgb = |values: &[f32]| [values[0], values[1 % channels], values[2 % channels]];
+        let factors = match maps.light {
+            MapLight::Fixed { .. } => vec![[1.0; 3]],
+            MapLight::Relightable { .. } => light[..depth].to_vec(),
+        };
         let held = layers.count as usize / depth;
         let function = |k: usize| {
             let mut sum = vec![[0.0f32; 3]; plane];
-            for i in 0..if k < held { depth } else { 0 } {
-                let factor = match maps.light {
-                    MapLight::Fixed { .. } => [1.0; 3],
-                    MapLight::Relightable { .. } => light[i],
-                };
-                let layer = &values[(k * depth + i) * plane * channels..][..plane * channels];
+            // The functions that a sheet does not hold are 0.
+            for (i, factor) in factors.iter().enumerate().take(if k < held { depth } else { 0 }) {
+                let layer = layers.decode_layer((k * depth + i) as u32);
                 for (out, texel) in sum.iter_mut().zip(layer.chunks_exact(channels)) {
                     let texel = rgb(texel);
                     *out = std::array::from_fn(|c| out[c] + factor[c] * texel[c]);

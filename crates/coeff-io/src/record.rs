@@ -109,6 +109,27 @@ pub struct Achieved {
     pub repairs: RepairCounts,
     /// What each effect took and what was saved, in the order of the plan.
     pub effects: Vec<EffectCost>,
+    /// What light maps took and reached, where there are any.
+    pub maps: Option<MapRecord>,
+}
+
+/// What light maps took and reached.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
+pub struct MapRecord {
+    /// Texels that a surface touches.
+    pub texels: u64,
+    /// Of these, those inside of bodies: they were filled from their own chart.
+    pub inside: u64,
+    /// Of those, the ones whose chart has nothing to fill them with: they are black.
+    pub unfilled: u64,
+    /// Estimated error of the irradiance in 3 bands over normals, against that of an open point: median, 95th percentile, worst.
+    pub error: [f32; 3],
+    /// Any-hit and closest-hit rays, which are also in those of the whole bake.
+    pub rays: [u64; 2],
+    /// Numbers beyond the range of the encoding, which were brought to its border.
+    pub clipped: u64,
+    /// Negative numbers where the encoding has none, which became 0.
+    pub negative: u64,
 }
 
 /// Receivers that were found broken and mended: moved to where their surface comes out of the body, or from their neighbours.

@@ -1,7 +1,7 @@
 //! Whether the parts of a [`Prt`] agree: no reader has to check an index, a length or a number again.
 
 use crate::table::{Chunk, Kind};
-use crate::{AlphaMode, BandChoice, Camera, Error, Material, Prt, Texture, TextureSlot};
+use crate::{AlphaMode, BandChoice, Camera, Error, Maps, Material, Prt, Texture, TextureSlot, Volume};
 
 /// Rounding that unit vectors and shares of 1 are allowed.
 const ROUNDING: f32 = 1e-3;
@@ -35,6 +35,22 @@ pub(crate) fn validate(prt: &Prt, chunks: &[Chunk]) -> Result<(), Error> {
         check.camera(camera)?;
     }
     check.records(prt)
+}
+
+/// Checks maps that belong to no file: all but the meshes that lie on them.
+///
+/// # Errors
+/// As [`validate`], without a place.
+pub(crate) fn maps_alone(maps: &Maps) -> Result<(), Error> {
+    Check { chunks: &[] }.sheets(maps)
+}
+
+/// Checks a volume that belongs to no file.
+///
+/// # Errors
+/// As [`validate`], without a place.
+pub(crate) fn volume_alone(volume: &Volume) -> Result<(), Error> {
+    Check { chunks: &[] }.volume(volume)
 }
 
 /// Knows where each kind of chunk lies.
@@ -228,7 +244,9 @@ impl Check<'_> {
         self.header(u64::from(achieved.worst_receiver) < vertices, || {
             format!("the worst receiver {} does not exist", achieved.worst_receiver)
         })?;
-        let sound = achieved.error.iter().chain(&achieved.bounce_changes).all(|v| v.is_finite() && *v >= 0.0);
+        let of_maps = achieved.maps.iter().flat_map(|maps| &maps.error);
+        let sound =
+            achieved.error.iter().chain(&achieved.bounce_changes).chain(of_maps).all(|v| v.is_finite() && *v >= 0.0);
         self.header(sound, || "an achieved error is no number".into())
     }
 

@@ -8,18 +8,23 @@ use sh_math::Bands;
 impl Check<'_> {
     /// Sheets, the meshes that lie on them, and every number of their layers.
     pub(crate) fn maps(&self, maps: &Maps, prt: &Prt) -> Result<(), Error> {
-        self.light(&maps.light, "the light maps")?;
+        self.sheets(maps)?;
         let (meshes, named) = (prt.meshes.len(), maps.sheet_of_mesh.len());
         self.header(meshes == named, || {
             format!("the light maps name sheets of {named} meshes, but there are {meshes}")
         })?;
-        let exists = |sheet: &u32| (*sheet as usize) < maps.sheets.len();
-        self.header(maps.sheet_of_mesh.iter().flatten().all(exists), || {
-            "a mesh lies on a sheet that does not exist".into()
-        })?;
         let drawn = maps.sheet_of_mesh.iter().any(Option::is_some);
         self.header(!drawn || !prt.geometry.uv1.is_empty(), || {
             "there are light maps but no second texture coordinates".into()
+        })
+    }
+
+    /// The sheets by themselves, and that each that is named exists.
+    pub(crate) fn sheets(&self, maps: &Maps) -> Result<(), Error> {
+        self.light(&maps.light, "the light maps")?;
+        let exists = |sheet: &u32| (*sheet as usize) < maps.sheets.len();
+        self.header(maps.sheet_of_mesh.iter().flatten().all(exists), || {
+            "a mesh lies on a sheet that does not exist".into()
         })?;
         maps.sheets.iter().enumerate().try_for_each(|(i, sheet)| self.sheet(i, sheet, maps))
     }

@@ -307,6 +307,23 @@ fn odd_sides_are_padded_and_gaps_follow_their_block() {
     }
 }
 
+/// A layer alone is what it is among all, in every encoding and with odd sides.
+#[test]
+fn layers_are_decoded_alone() {
+    let values: Vec<f32> = (0..7 * 5 * 4 * 3).map(|i| noise(i) * 3.0 - 1.0).collect();
+    for encoding in Encoding::ALL {
+        let layers = Layers::encode([7, 5, 4, 3], &values, &Coding::plain(encoding)).layers;
+        let all = layers.decode();
+        assert_eq!(all.len(), values.len());
+        for layer in 0..4 {
+            assert_eq!(layers.decode_layer(layer), all[layer as usize * 105..][..105], "{encoding:?}");
+        }
+        let worst = all.iter().zip(&values).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        // Noise is the worst that blocks can meet; but for them the numbers stand where they were.
+        assert!(matches!(encoding, Encoding::Bc1 | Encoding::Bc6h) || worst < 0.01, "{encoding:?}: {worst}");
+    }
+}
+
 /// Errors are those of irradiance: reckoned here from the coefficients by hand.
 #[test]
 fn errors_are_told_in_irradiance() {
@@ -321,6 +338,30 @@ fn errors_are_told_in_irradiance() {
     assert_eq!((masked.worst, masked.rms_relative(), masked.texels), (0.0, 0.0, 1));
     let (count, mean) = (1000, normals(1000).iter().map(|n| f64::from(n.z)).sum::<f64>());
     assert!((mean / f64::from(count) - 0.5).abs() < 1e-6, "half the height of a hemisphere on average");
+}
+
+/// Relightable maps are lit by the sum over the light, in one channel and in three.
+#[test]
+fn maps_are_lit() {
+    let light = [[1.0, 2.0, 3.0], [0.5, 0.0, -1.0], [0.25; 3], [-2.0, 1.0, 0.0]];
+    let relightable = MapLight::Relightable { bands: 2 };
+    let maps = Maps { basis: Basis::Hl2, ..maps(relightable) };
+    for channels in [1, 3_usize] {
+        let values: Vec<f32> = (0..3 * 4 * 2 * channels as u32).map(|i| noise(i) - 0.5).collect();
+        let sheet = Sheet { layers: Layers::exact([2, 1, 12, channels as u32], &values) };
+        let lit = sheet.lit(&maps, &light);
+        for function in 0..3 {
+            for texel in 0..2 {
+                for channel in 0..3 {
+                    let at = |i: usize| ((function * 4 + i) * 2 + texel) * channels + channel.min(channels - 1);
+                    let expected: f64 =
+                        light.iter().enumerate().map(|(i, l)| f64::from(values[at(i)]) * f64::from(l[channel])).sum();
+                    let found = f64::from(lit.functions[function][texel][channel]);
+                    assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
+                }
+            }
+        }
+    }
 }
 
 /// Transfer keeps its sign in every layer: none is brought onto the curve of sRGB.

@@ -22,6 +22,7 @@ Examples:
   relume bake city.glb -o city.prt --time 10m
   relume bake house.glb -o house.prt --storage texture --texels 1024 --basis modified-h6
   relume bake house.glb -o house.prt --storage texture --probe noon.hdr --light fixed --window auto --encoding bc6h
+  relume bake house.glb -o house.prt --volume 0.5m --volume-levels 1
 
 Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest result so far stays.";
 
@@ -112,6 +113,9 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
     if achieved.error[2] > 0.0 {
         console.notice(&format!("worst {}", worst_place(prt)));
     }
+    if let Some(maps) = &achieved.maps {
+        console.notice(&light_maps(maps, prt.settings.quality));
+    }
     let repairs = achieved.repairs;
     if repairs.inside + repairs.bad_normals > 0 {
         let (inside, normals) = (repairs.inside, repairs.bad_normals);
@@ -120,7 +124,28 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
             "warning: {inside} vertices inside geometry, {normals} with bad normals; moved out or repaired from neighbours but for {left}"
         ));
     }
+    if let Some(volume) = &prt.volume {
+        let poor = volume.validity.iter().filter(|&&validity| validity < 0.5).count();
+        let probes = volume.validity.len();
+        console.notice(&format!("volume: {probes} probes, {poor} of them inside of bodies"));
+    }
     console.notice(&format!("wrote {}", options.output.display()));
+}
+
+/// What light maps took and reached, in words.
+pub(crate) fn light_maps(maps: &coeff_io::MapRecord, quality: Quality) -> String {
+    let mut text = format!("light maps: {} texels, {}", maps.texels, error(quality, maps.error));
+    for (count, what) in [
+        (maps.inside, "inside of bodies, filled from their chart"),
+        (maps.unfilled, "with nothing to fill them, black"),
+        (maps.clipped, "numbers clipped by the encoding"),
+        (maps.negative, "negative numbers set to 0"),
+    ] {
+        if count > 0 {
+            text.push_str(&format!("; {count} {what}"));
+        }
+    }
+    text
 }
 
 /// Where the receiver with the worst error stands.

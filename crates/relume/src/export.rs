@@ -1,16 +1,29 @@
 //! `relume export`: the coefficients of a baked file for other programs.
 
 use crate::console::Console;
-use crate::source;
-use anyhow::{Context, Result};
-use std::path::PathBuf;
+use crate::source::{self, ProbeSource, ReadOptions};
+use crate::usage::Usage;
+use anyhow::{Context, Result, bail};
+use coeff_io::{Container, MapLight, Prt, Volume, export};
+use sh_math::Bands;
+use std::path::{Path, PathBuf};
 
 pub(crate) const EXAMPLES: &str = "\
-Example:
+Examples:
   relume export atrium.prt --format npy -o atrium/
+  relume export atrium.prt --format ktx2 -o textures/
+  relume export atrium.prt --format dds --probe builtin:sky -o textures/
+  relume export atrium.prt --format json -o text/
 
-Writes positions.npy [R,3], normals.npy [R,3] and transfer.npy [R, n*n, C]. Where C is 3, transfer times light is
-outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times that.";
+npy writes positions.npy [R,3], normals.npy [R,3] and transfer.npy [R, n*n, C]. Where C is 3, transfer times light is
+outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times that.
+
+ktx2 and dds write light maps as 2-D arrays (sheet_0 ..., one layer per function and coefficient of the light, blocks and
+floating numbers as they are held, eight bits as halves) with maps.json, and a volume as nine 3-D textures of RGBA halves
+(volume_0 ... volume_8, spherical harmonics of irradiance / pi over world normals) with volume.json. A volume that answers
+to any light is lit by --probe.
+
+json writes a volume with its cells and all numbers of its probes: volume.json.";
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -23,20 +36,80 @@ pub(crate) struct Options {
     /// The folder to write into; made if need be.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    /// The light for textures of a volume that answers to any: .hdr, .exr, a folder of six faces, or builtin:NAME.
+    #[arg(long, value_name = "PROBE", value_parser = source::probe)]
+    probe: Option<ProbeSource>,
+    #[command(flatten)]
+    read: ReadOptions,
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum Format {
-    /// Arrays of NumPy.
+    /// Arrays of NumPy: the transfer of the vertices.
     Npy,
+    /// Textures of Khronos: light maps and irradiance volumes.
+    Ktx2,
+    /// Textures of DirectX: light maps and irradiance volumes.
+    Dds,
+    /// Readable text: irradiance volumes.
+    Json,
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let prt = source::prt(&options.file)?;
-    match options.format {
-        Format::Npy => coeff_io::export::npy(&prt, &options.output)
-            .with_context(|| format!("cannot write into {}", options.output.display()))?,
-    }
-    console.notice(&format!("wrote {} receivers into {}", prt.geometry.positions.len(), options.output.display()));
+    let folder = &options.output;
+    let about = || format!("cannot write into {}", folder.display());
+    let wrote = match options.format {
+        Format::Npy => {
+            export::npy(&prt, folder).with_context(about)?;
+            format!("{} receivers", prt.geometry.positions.len())
+        }
+        Format::Ktx2 => textures(&prt, Container::Ktx2, options, console)?,
+        Format::Dds => textures(&prt, Container::Dds, options, console)?,
+        Format::Json => {
+            let volume = prt.volume.as_ref().with_context(|| lacks(&options.file, "no irradiance volume"))?;
+            std::fs::create_dir_all(folder).with_context(about)?;
+            export::volume_json(volume, &folder.join("volume.json")).with_context(about)?;
+            format!("{} probes", volume.positions.len())
+        }
+    };
+    console.notice(&format!("wrote {wrote} into {}", folder.display()));
     Ok(())
+}
+
+/// Writes what there is of maps and volume; tells what it was.
+fn textures(prt: &Prt, container: Container, options: &Options, console: &Console) -> Result<String> {
+    if prt.maps.is_none() && prt.volume.is_none() {
+        bail!(lacks(&options.file, "neither light maps nor an irradiance volume"));
+    }
+    let about = || format!("cannot write into {}", options.output.display());
+    let mut wrote = Vec::new();
+    // The light is asked for before anything is written.
+    let light = prt.volume.as_ref().map(|volume| light(volume, options, console)).transpose()?;
+    if let Some(maps) = &prt.maps {
+        export::maps(maps, container, &options.output).with_context(about)?;
+        wrote.push(format!("{} sheets", maps.sheets.len()));
+    }
+    if let Some((volume, light)) = prt.volume.as_ref().zip(light) {
+        export::volume(volume, &light, container, &options.output).with_context(about)?;
+        wrote.push("9 textures of the volume".into());
+    }
+    Ok(wrote.join(" and "))
+}
+
+/// The coefficients that light a volume: none where its light is fixed.
+fn light(volume: &Volume, options: &Options, console: &Console) -> Result<Vec<[f32; 3]>> {
+    let MapLight::Relightable { bands } = volume.light else { return Ok(Vec::new()) };
+    let Some(probe) = &options.probe else {
+        bail!(Usage("the volume answers to any light: give the one for its textures with --probe".into()));
+    };
+    let bands = Bands::new(bands).context("the volume has no bands")?;
+    Ok(sh_math::project(bands, probe.load(&options.read, console)?.samples()).values)
+}
+
+fn lacks(file: &Path, what: &str) -> String {
+    format!(
+        "{} holds {what}: bake them into it, or export the transfer of its vertices with --format npy",
+        file.display()
+    )
 }

@@ -5,16 +5,19 @@ use crate::draw::Window;
 use crate::maps::MapOptions;
 use crate::source::{ProbeSource, ReadOptions};
 use crate::usage::Usage;
+use crate::volume::VolumeOptions;
 use anyhow::Result;
 use bake::{Extras, FixedLight};
 use scene::Scene;
 use sh_math::Bands;
 
-/// Light maps, and whether light is in them.
-#[derive(Debug, Clone, clap::Args)]
+/// Light maps, a volume, and whether light is in them.
+#[derive(Debug, clap::Args)]
 pub(crate) struct ExtraOptions {
     #[command(flatten)]
     maps: MapOptions,
+    #[command(flatten)]
+    volume: VolumeOptions,
     /// Whether light maps and volumes answer to any light, or hold that of --probe: fixed takes a small part of the bytes.
     #[arg(long, value_enum, default_value_t = LightMode::Relightable)]
     light: LightMode,
@@ -42,6 +45,7 @@ impl ExtraOptions {
         probe: Option<(&ProbeSource, &ReadOptions)>,
         console: &Console,
     ) -> Result<Extras> {
+        let volume = self.volume.settings()?;
         let light = match (self.light, probe) {
             (LightMode::Relightable, _) => None,
             (LightMode::Fixed, None) => {
@@ -49,11 +53,13 @@ impl ExtraOptions {
             }
             (LightMode::Fixed, Some((probe, read))) => Some(self.fixed(probe, read, bands, console)?),
         };
-        if light.is_some() && !in_texture {
-            return Err(Usage("--light fixed is for light maps: add --storage texture".into()).into());
+        if light.is_some() && !in_texture && volume.is_none() {
+            return Err(
+                Usage("--light fixed is for light maps and volumes: add --storage texture or --volume".into()).into()
+            );
         }
         let maps = in_texture.then(|| self.maps.settings(scene, console)).transpose()?;
-        Ok(Extras { maps, light, ..Extras::default() })
+        Ok(Extras { maps, volume, light })
     }
 
     fn fixed(&self, probe: &ProbeSource, read: &ReadOptions, bands: u32, console: &Console) -> Result<FixedLight> {

@@ -150,6 +150,9 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
     let worst = achieved.worst_receiver;
     row("error", format!("{}; receiver {worst} is worst", crate::bake::error(settings.quality, achieved.error)))?;
     row("rays", format!("{} visibility, {} bounce", achieved.visibility_rays, achieved.bounce_rays))?;
+    if let Some(maps) = &achieved.maps {
+        row("maps", crate::bake::light_maps(maps, settings.quality))?;
+    }
     row("bounces", format!("{}, which changed {:?}", achieved.bounces, achieved.bounce_changes))?;
     let repairs = achieved.repairs;
     let (inside, normals) = (repairs.inside, repairs.bad_normals);

@@ -17,6 +17,7 @@ mod lens;
 mod light;
 mod light_facts;
 mod list;
+mod look;
 mod maps;
 mod output;
 mod picture;
@@ -29,6 +30,8 @@ mod source;
 mod timed;
 mod usage;
 mod uv;
+mod visitor;
+mod volume;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

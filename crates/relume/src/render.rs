@@ -3,9 +3,11 @@
 use crate::console::Console;
 use crate::draw::{Backend, Drawer, Window};
 use crate::lens::{self, Lens};
+use crate::look::{self, LookOptions};
 use crate::output;
 use crate::picture::{self, DisplayOptions, Size, Target};
 use crate::source::{self, ProbeOptions};
+use crate::visitor::VisitorOptions;
 use anyhow::Result;
 use glam::{EulerRot, Quat};
 use render_cpu::Frame;
@@ -19,8 +21,13 @@ Examples:
   relume render atrium.prt --probe kitchen.hdr --rotate 90,0,0 --tonemap filmic -o kitchen.png
   relume render atrium.prt --probe kitchen.hdr --camera 0,1.6,5,0,1,0,45 -o linear.exr
   relume render atrium.prt --probe kitchen.hdr --frames 36 -o turn.png
+  relume render hall.prt --probe builtin:sky --visitor suzanne.prt --at 0,1,0,0.5 --to 4,1,0 --frames 24 -o walk.png
+  relume render hall.prt --probe builtin:sky --basis hl2 -o hall-hl2.png
+  relume render hall.prt --probe builtin:sky --basis modified-h6 --functions 1 --albedo off -o hall-flat.png
 
-The last writes turn-0000.png to turn-0035.png, the light turned by 10 degrees each, and tells the time per frame.";
+The fourth writes turn-0000.png to turn-0035.png, the light turned by 10 degrees each, and tells the time per frame. The fifth moves an object through the
+scene's irradiance volume. The last two draw
+light maps: in another basis than they were baked in, and one function of six as an ordinary light map, without the surfaces' colours.";
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -58,7 +65,11 @@ pub(crate) struct Options {
     /// What is drawn behind the scene.
     #[arg(long, value_enum, default_value_t = Background::Sky)]
     background: Background,
-    /// Draws N pictures, the light turned by 360/N degrees from one to the next.
+    #[command(flatten)]
+    look: LookOptions,
+    #[command(flatten)]
+    visitor: VisitorOptions,
+    /// Draws N pictures, the light turned by 360/N degrees from one to the next; with --to, a visitor on its way instead.
     #[arg(long, value_name = "N")]
     frames: Option<NonZeroU32>,
 }
@@ -73,7 +84,12 @@ enum Background {
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     output::check(&options.output.path)?;
-    let prt = source::prt(&options.file)?;
+    let scene = source::prt(&options.file)?;
+    let visitor = options.visitor.load()?;
+    let prt = match &visitor {
+        Some(visitor) => visitor.at(&scene, 0.0)?,
+        None => scene.clone(),
+    };
     let frame = Frame {
         camera: lens::of_prt(options.camera.as_ref(), &prt.cameras)?,
         width: options.size.width,
@@ -84,16 +100,29 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         bloom: options.bloom,
         supersample: options.supersample,
         sky: options.background == Background::Sky,
-        albedo: true,
-        basis: None,
-        functions: None,
+        albedo: options.look.albedo(),
+        basis: options.look.basis,
+        functions: options.look.functions,
     };
-    frame.check().map_err(|error| crate::usage::Usage(error.to_string()))?;
+    // Of a turn the second frame, too, before anything is written.
+    let count = options.frames.map_or(1, NonZeroU32::get);
+    for frame in [frame.clone(), turned(&frame, 1, count)] {
+        frame.check_for(&prt).map_err(|error| crate::usage::Usage(error.to_string()))?;
+    }
+    look::tell(&prt, &options.probe.name(), console);
     let environment = options.probe.load(console)?;
     let mut drawer = Drawer::open(options.backend, &prt, &environment, options.window, console)?;
-    match options.frames {
-        Some(count) => draw_turn(options, &frame, count.get(), &mut drawer, console),
-        None => draw_one(options, &frame, &mut drawer, console),
+    match (options.frames, &visitor) {
+        (Some(count), Some(visitor)) if visitor.moves() => {
+            drop(drawer);
+            let draw = |share: f32| -> Result<_> {
+                let prt = visitor.at(&scene, share)?;
+                Drawer::open(options.backend, &prt, &environment, options.window, console)?.draw(&frame, console)
+            };
+            draw_way(options, count.get(), &draw, console)
+        }
+        (Some(count), _) => draw_turn(options, &frame, count.get(), &mut drawer, console),
+        (None, _) => draw_one(options, &frame, &mut drawer, console),
     }
 }
 
@@ -110,8 +139,7 @@ fn draw_one(options: &Options, frame: &Frame, drawer: &mut Drawer<'_>, console: 
 fn draw_turn(options: &Options, frame: &Frame, count: u32, drawer: &mut Drawer<'_>, console: &Console) -> Result<()> {
     let mut times = Vec::with_capacity(count.min(100_000) as usize);
     for number in 0..count {
-        let turn = Quat::from_rotation_y(std::f32::consts::TAU * number as f32 / count as f32);
-        let frame = Frame { rotation: turn * frame.rotation, ..frame.clone() };
+        let frame = turned(frame, number, count);
         let on_gpu = drawer.time(&frame)?;
         let began = Instant::now();
         let image = drawer.draw(&frame, console)?;
@@ -125,6 +153,30 @@ fn draw_turn(options: &Options, frame: &Frame, count: u32, drawer: &mut Drawer<'
     console.print(&format!(
         "{count} frames: median {median:.2} ms, least {least:.2}, most {most:.2}, the first {first:.2}"
     ))
+}
+
+/// Draws frame after frame of an object on its way, from its first place to its last.
+fn draw_way(
+    options: &Options,
+    count: u32,
+    draw: &dyn Fn(f32) -> Result<render_cpu::Image>,
+    console: &Console,
+) -> Result<()> {
+    let progress = console.progress();
+    for number in 0..count {
+        let image = draw(number as f32 / (count - 1).max(1) as f32)?;
+        options.output.numbered(number).write(options.size, &image.linear, &image.display)?;
+        progress.set("frames", u64::from(number) + 1, u64::from(count));
+    }
+    drop(progress);
+    console.notice(&format!("wrote {count} pictures"));
+    Ok(())
+}
+
+/// Frame `number` of the `count` of a full turn.
+fn turned(frame: &Frame, number: u32, count: u32) -> Frame {
+    let turn = Quat::from_rotation_y(std::f32::consts::TAU * (number % count) as f32 / count as f32);
+    Frame { rotation: turn * frame.rotation, ..frame.clone() }
 }
 
 fn milliseconds(took: Duration) -> f64 {

@@ -95,6 +95,14 @@ impl ProbeOptions {
     pub(crate) fn load(&self, console: &Console) -> Result<Environment> {
         self.probe.load(&self.read, console)
     }
+
+    /// The probe as the user named it.
+    pub(crate) fn name(&self) -> String {
+        match &self.probe.0 {
+            Source::Path(path) => path.display().to_string(),
+            Source::Builtin(name) => format!("builtin:{name}"),
+        }
+    }
 }
 
 /// A light probe that is not loaded yet.

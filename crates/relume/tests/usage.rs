@@ -46,7 +46,7 @@ fn wrong_usage_ends_with_2_and_a_reason() {
         (&["bake", "builtin:plane"], "--output"),
         (&["bake", "builtin:nowhere", "-o", "a.prt"], "atrium"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--rays", "9", "--error", "0.1"], "cannot be used with"),
-        (&["bake", "builtin:plane", "-o", "a.prt", "--storage", "texture"], "not available yet"),
+        (&["bake", "builtin:plane", "-o", "a.prt", "--storage", "cloud"], "cloud"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--bands", "0"], "--bands"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--bands", "many"], "many"),
         (&["bake", "builtin:plane", "-o", "a.prt", "--effects", "magic"], "magic"),
@@ -60,6 +60,9 @@ fn wrong_usage_ends_with_2_and_a_reason() {
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--rotate", "1,2"], "90,0,0"),
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--camera", "1,2,3"], "seven numbers"),
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--backend", "magic"], "magic"),
+        (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--basis", "h5"], "modified-h-6"),
+        (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--functions", "few"], "few"),
+        (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--albedo", "dim"], "dim"),
         (&["reference", "builtin:plane", "--probe", "builtin:sky", "-o", "a.exr", "--light", "some"], "bands:N"),
         (&["reference", "builtin:plane", "--probe", "builtin:sky", "-o", "a.exr", "--spp", "0"], "--spp"),
         (

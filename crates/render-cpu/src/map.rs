@@ -32,16 +32,14 @@ impl LitMaps {
     /// Lights the maps of a sound file by `light` (turned by `rotation` already) and brings them into `basis`.
     pub(crate) fn new(prt: &Prt, light: &Rgb, rotation: Quat, basis: Basis) -> Self {
         let sheets = prt.maps.as_ref().map_or_else(Vec::new, |maps| {
-            let light = maps.light_of(light);
-            let sheets = maps.sheets.par_iter();
-            sheets.map(|sheet| Sheet::new(sheet.lit(maps, &light.values).changed(maps.basis, basis), basis)).collect()
+            maps.sheets.par_iter().map(|sheet| Sheet::new(maps.lit_in(sheet, light, basis))).collect()
         });
         Self { rotation, basis, sheets }
     }
 }
 
 impl Sheet {
-    fn new(lit: coeff_io::Lit, basis: Basis) -> Self {
+    fn new((basis, lit): (Basis, coeff_io::Lit)) -> Self {
         let texels = lit.functions.first().map_or(0, Vec::len);
         let coefficients = (0..texels).flat_map(|texel| lit.functions.iter().map(move |function| function[texel]));
         Self { basis, width: lit.width, height: lit.height, coefficients: coefficients.collect() }

@@ -242,6 +242,26 @@ fn fewer_functions_are_the_first_ones() {
     assert!(same(drawn_in(Basis::ModifiedH6, None, Some(4)), flat) > 1e-2, "three functions more must be noticed");
 }
 
+/// A sheet of one function is an ordinary light map in every basis: no normal map lies upon it.
+#[test]
+fn an_ordinary_light_map_stays_what_it_is() {
+    let values = noise(Basis::ModifiedH6);
+    let plane = (TEXELS[0] * TEXELS[1] * 3) as usize;
+    let mut prt = bumpy_wall(None);
+    let layers = Layers::exact([TEXELS[0], TEXELS[1], 1, 3], &values[..plane]);
+    let sheets = vec![Sheet { layers }];
+    prt.maps = Some(Maps { basis: Basis::ModifiedH6, light: fixed(), sheets, sheet_of_mesh: vec![Some(0)] });
+    for basis in [None, Some(Basis::Hl2), Some(Basis::Makhotkin9), Some(Basis::ModifiedH4)] {
+        let picture = draw(&prt, &Frame { basis, ..frame() });
+        let error = worst(&picture, |i| expected(Basis::ModifiedH1, &values, DVec3::Z, i, 0.5));
+        assert!(error < 2e-5, "{basis:?}: {error}");
+    }
+    // With all six functions the same light is another one in a basis without constants.
+    prt.maps = Some(maps(Basis::ModifiedH6, fixed(), TEXELS, &values));
+    let picture = draw(&prt, &Frame { basis: Some(Basis::Hl2), ..frame() });
+    assert!(worst(&picture, |i| expected(Basis::ModifiedH1, &values, DVec3::Z, i, 0.5)) > 0.1);
+}
+
 #[test]
 fn what_maps_cannot_show_is_refused() {
     let mut prt = bumpy_wall(None);

@@ -224,7 +224,7 @@ mod tests {
         assert_eq!(parts(&Material { alpha: AlphaMode::Blend, ..matt() }, true), ["sorted", "blended", "fades"]);
         assert_eq!(parts(&Material { transmission: 0.5, ..matt() }, true), ["sorted", "blended"]);
         assert_eq!(parts(&Material { emissive_texture: slot, ..matt() }, true), ["glow_textured"]);
-        assert!(parts(&bumpy, true).is_empty(), "a normal map bends nothing where nothing shines");
+        assert!(parts(&bumpy, true).is_empty(), "a normal map bends nothing where nothing shines and no map lies");
         assert_eq!(parts(&Material { normal_texture: slot, ..shiny.clone() }, true), ["shiny", "normal_textured"]);
         assert_eq!(parts(&Material { normal_texture: slot, ..shiny }, false), ["shiny"], "nor without tangents");
     }

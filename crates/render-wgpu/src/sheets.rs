@@ -27,18 +27,23 @@ pub(crate) struct Sheets {
 #[derive(Debug)]
 struct Stored {
     size: [u32; 2],
+    /// The functions that it holds.
+    held: Basis,
     strips: Vec<Strip>,
 }
 
-/// All sheets in one basis.
+/// All sheets as they are drawn.
 #[derive(Debug)]
 struct Drawn {
+    /// What was asked for.
     basis: Basis,
     sheets: Vec<DrawnSheet>,
 }
 
 #[derive(Debug)]
 struct DrawnSheet {
+    /// The functions of the texture.
+    basis: Basis,
     /// For surfaces.
     bindings: wgpu::BindGroup,
     /// One for each strip.
@@ -53,7 +58,8 @@ impl Sheets {
         let store = |sheet: &coeff_io::Sheet| {
             let layers = &sheet.layers;
             let pipeline = &pipelines[usize::from(layers.channels == 3)];
-            Ok(Stored { size: [layers.width, layers.height], strips: Strip::all(gpu, pipeline, maps, layers)? })
+            let strips = Strip::all(gpu, pipeline, maps, sheet)?;
+            Ok(Stored { size: [layers.width, layers.height], held: maps.held(sheet), strips })
         };
         let stored = maps.sheets.iter().map(store).collect::<Result<_, Error>>()?;
         let sheet_of_mesh = maps.sheet_of_mesh.clone();
@@ -76,6 +82,11 @@ impl Sheets {
     /// The layout of group 3 of sheet.wgsl.
     pub(crate) fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
+    }
+
+    /// The basis that a sheet is drawn in where `asked` is asked for.
+    pub(crate) fn basis(&self, sheet: u32, asked: Basis) -> Basis {
+        Maps::shown(self.stored[sheet as usize].held, asked)
     }
 
     /// The bindings of a sheet; none before the first [`Sheets::record`].
@@ -122,19 +133,16 @@ impl Sheets {
         pass.set_pipeline(&self.fill);
         for (stored, sheet) in self.stored.iter().zip(&drawn.sheets) {
             for (strip, bindings) in stored.strips.iter().zip(&sheet.fills) {
-                strip.fill(&mut pass, bindings, drawn.basis.count() as u32);
+                strip.fill(&mut pass, bindings, sheet.basis.count() as u32);
             }
         }
     }
 
-    /// Textures for `basis`, still black.
-    fn draw_in(&self, gpu: &Gpu, basis: Basis) -> Result<Drawn, Error> {
-        let rows = basis.matrix_from(self.maps.basis);
-        let stored = self.maps.basis.count();
-        let change = rows.iter().flat_map(|row| &row[..stored]).map(|&x| x as f32).collect::<Vec<_>>();
-        let storage = wgpu::BufferUsages::STORAGE;
-        let change = geometry::buffer(gpu, "change of basis", bytemuck::cast_slice(&change), storage)?;
+    /// Textures for the basis that is asked for, still black.
+    fn draw_in(&self, gpu: &Gpu, asked: Basis) -> Result<Drawn, Error> {
         let draw = |(index, stored): (usize, &Stored)| {
+            let basis = Maps::shown(stored.held, asked);
+            let change = change(gpu, stored.held, basis)?;
             let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
             let label = format!("light map {index}");
             let texture = picture::create(gpu, &label, stored.size, basis.count() as u32, FORMAT, usage)?;
@@ -143,10 +151,10 @@ impl Sheets {
                 ..Default::default()
             });
             let fills = stored.strips.iter().map(|strip| strip.bind(gpu, &self.fill, &change, &view)).collect();
-            Ok(DrawnSheet { bindings: self.bind(gpu, &label, &view), fills })
+            Ok(DrawnSheet { basis, bindings: self.bind(gpu, &label, &view), fills })
         };
         let sheets = self.stored.iter().enumerate().map(draw).collect::<Result<_, Error>>()?;
-        Ok(Drawn { basis, sheets })
+        Ok(Drawn { basis: asked, sheets })
     }
 
     fn bind(&self, gpu: &Gpu, label: &str, view: &wgpu::TextureView) -> wgpu::BindGroup {
@@ -158,6 +166,13 @@ impl Sheets {
             entries: &entries.collect::<Vec<_>>(),
         })
     }
+}
+
+/// The matrix from coefficients of `held` to those of `shown`.
+fn change(gpu: &Gpu, held: Basis, shown: Basis) -> Result<wgpu::Buffer, Error> {
+    let rows = shown.matrix_from(held);
+    let matrix = rows.iter().flat_map(|row| &row[..held.count()]).map(|&x| x as f32).collect::<Vec<_>>();
+    geometry::buffer(gpu, "change of basis", bytemuck::cast_slice(&matrix), wgpu::BufferUsages::STORAGE)
 }
 
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

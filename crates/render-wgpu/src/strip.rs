@@ -3,7 +3,7 @@
 //! A sheet is lit as vertices are, each function at each texel a vertex of its own; strips keep the result within one storage binding.
 
 use crate::{Error, Gpu, geometry, gpu_data, relight::Relight, shaders};
-use coeff_io::{Layers, MapLight, Maps, Transfer};
+use coeff_io::{Layers, MapLight, Maps, Sheet, Transfer};
 use sh_math::{Bands, Rgb};
 
 /// Texels per workgroup along each axis, as sheet_fill.wgsl says.
@@ -20,14 +20,15 @@ pub(crate) struct Strip {
 }
 
 impl Strip {
-    /// Uploads a sheet in as many strips as it takes.
+    /// Uploads a sheet, with the functions that it holds, in as many strips as it takes.
     pub(crate) fn all(
         gpu: &Gpu,
         pipeline: &wgpu::ComputePipeline,
         maps: &Maps,
-        layers: &Layers,
+        sheet: &Sheet,
     ) -> Result<Vec<Self>, Error> {
-        let row_bytes = LIT_BYTES * maps.basis.count() as u64 * u64::from(layers.width);
+        let (layers, stored) = (&sheet.layers, maps.held(sheet).count());
+        let row_bytes = LIT_BYTES * stored as u64 * u64::from(layers.width);
         let limit = gpu.limits.max_storage_buffer_binding_size;
         let what = || format!("a row of a light map of {} texels", layers.width);
         Error::check_fits(what, row_bytes, limit, "bytes", "make it smaller or use the CPU renderer")?;
@@ -35,18 +36,16 @@ impl Strip {
         let values = layers.decode();
         let first_rows = (0..layers.height).step_by(most as usize);
         let rows = first_rows.map(|first| first..layers.height.min(first + most));
-        rows.map(|rows| Self::new(gpu, pipeline, maps, layers, &values, rows)).collect()
+        rows.map(|rows| Self::new(gpu, pipeline, &maps.light, (layers, stored, &values), rows)).collect()
     }
 
     fn new(
         gpu: &Gpu,
         pipeline: &wgpu::ComputePipeline,
-        maps: &Maps,
-        layers: &Layers,
-        values: &[f32],
+        light: &MapLight,
+        (layers, stored, values): (&Layers, usize, &[f32]),
         rows: std::ops::Range<u32>,
     ) -> Result<Self, Error> {
-        let stored = maps.basis.count();
         let strip = gpu_data::Strip {
             width: layers.width,
             rows: rows.len() as u32,
@@ -54,9 +53,9 @@ impl Strip {
             stored: stored as u32,
         };
         let transfer = Transfer {
-            bands: light_bands(&maps.light),
+            bands: light_bands(light),
             channels: layers.channels,
-            values: answers(layers, values, [stored, maps.light.depth()], rows),
+            values: answers(layers, values, [stored, light.depth()], rows),
             ..Transfer::default()
         };
         let limit = gpu.limits.max_storage_buffer_binding_size;
@@ -130,15 +129,12 @@ fn answers(layers: &Layers, values: &[f32], [stored, depth]: [usize; 2], rows: s
     let plane = width * layers.height as usize;
     let texels = rows.start as usize * width..rows.end as usize * width;
     let mut answers = Vec::with_capacity(stored * texels.len() * depth * channels);
-    let held = layers.count as usize / depth;
-    for function in 0..held {
+    for function in 0..stored {
         for texel in texels.clone() {
             for layer in function * depth..(function + 1) * depth {
                 answers.extend_from_slice(&values[(layer * plane + texel) * channels..][..channels]);
             }
         }
     }
-    // A sheet may hold the first functions alone: the others are 0.
-    answers.resize(stored * texels.len() * depth * channels, 0.0);
     answers
 }

@@ -27,13 +27,13 @@ pub(crate) struct Surfaces {
     materials: Vec<BoundMaterial>,
     layouts: Layouts,
     format: wgpu::TextureFormat,
-    /// Materials in use, and whether under a light map.
-    kinds: Vec<(u32, bool)>,
+    /// Materials in use, with the light map above them.
+    kinds: Vec<(u32, Option<u32>)>,
     pipelines: HashMap<Variant, wgpu::RenderPipeline>,
     reflection: Option<wgpu::BindGroup>,
     /// Only where a mesh shows one.
     sheets: Option<Sheets>,
-    /// The basis that light maps are drawn in.
+    /// The basis that is asked for light maps.
     basis: Option<Basis>,
     opaque: Vec<Draw>,
     blended: Option<Blended>,
@@ -61,7 +61,7 @@ impl Surfaces {
         let geometry = Geometry::new(gpu, prt, lit, reflection.is_some())?;
         let materials = material::upload(gpu, prt, &layouts.material)?;
         let draws = draws(prt);
-        let mut kinds = draws.iter().map(|draw| (draw.material, draw.sheet.is_some())).collect::<Vec<_>>();
+        let mut kinds = draws.iter().map(|draw| (draw.material, draw.sheet)).collect::<Vec<_>>();
         kinds.sort_unstable();
         kinds.dedup();
         let is_blended = |draw: &Draw| materials[draw.material as usize].is_blended();
@@ -78,12 +78,18 @@ impl Surfaces {
 
     /// Builds the pipelines that are not there yet.
     fn build_pipelines(&mut self, gpu: &Gpu) {
-        for &(material, mapped) in &self.kinds {
-            let variant = self.materials[material as usize].variant(self.basis.filter(|_| mapped));
+        for &(material, sheet) in &self.kinds {
+            let variant = self.variant(material, sheet);
             if !self.pipelines.contains_key(&variant) {
                 self.pipelines.insert(variant, self.pipeline(gpu, variant));
             }
         }
+    }
+
+    fn variant(&self, material: u32, sheet: Option<u32>) -> Variant {
+        let maps = self.sheets.as_ref().zip(sheet);
+        let basis = maps.zip(self.basis).map(|((sheets, sheet), asked)| sheets.basis(sheet, asked));
+        self.materials[material as usize].variant(basis)
     }
 
     /// The light maps without their layers, if there are any.
@@ -135,7 +141,7 @@ impl Surfaces {
         let mut last = None;
         for draw in draws {
             let material = &self.materials[draw.material as usize];
-            let variant = material.variant(self.basis.filter(|_| draw.sheet.is_some()));
+            let variant = self.variant(draw.material, draw.sheet);
             if last != Some(variant) {
                 self.set_variant(pass, variant);
                 last = Some(variant);

@@ -1,6 +1,7 @@
 //! Each WGSL function against its Rust twin, on a GPU: tests only.
 
 mod hemisphere;
+mod sheets;
 
 use crate::relight::Relight;
 use crate::{Driver, Error, Frame, Gpu, Tonemap, finish, geometry, gpu_data, readback, view};

@@ -6,7 +6,7 @@ use crate::bake::bake_then;
 use crate::domain::Domain;
 use crate::extras::{Done, Extras, FixedLight};
 use crate::{Error, ProgressFn};
-use coeff_io::{Encoding, Prt, Settings};
+use coeff_io::{Encoding, Settings};
 use rayon::prelude::*;
 use scene::Scene;
 use sh_math::hemisphere::Basis;
@@ -47,22 +47,21 @@ pub fn directional(
         MapSettings { basis: Basis::Sh9, sheets: sheets.to_vec(), stitch: false, dilation: 0, encoding: Encoding::F32 };
     let extras = Extras { maps: Some(maps), light: Some(light.clone()), volume: None };
     let maps = extras.maps.as_ref().expect("just put there");
-    let (_, found) = bake_then(scene, settings, &extras, progress, |done, prt| {
+    let (_, found) = bake_then(scene, settings, &extras, progress, |done, _| {
         check(done, maps)?;
-        let before = prt.achieved.visibility_rays + prt.achieved.bounce_rays;
-        let texels = all_directional(done, maps, prt)?;
-        Ok(Directional { texels, rays: prt.achieved.visibility_rays + prt.achieved.bounce_rays - before })
+        all_directional(done, maps)
     })?;
     Ok(found)
 }
 
-fn all_directional(done: &Done<'_>, maps: &MapSettings, prt: &mut Prt) -> Result<Vec<DirectionalTexel>, Error> {
+fn all_directional(done: &Done<'_>, maps: &MapSettings) -> Result<Directional, Error> {
     let functions = functions(done);
     let bank = done.bank(Domain::Hemisphere, functions);
     let arrivals = done.arrivals(&bank, functions);
-    let (mut out, mut first_index) = (Vec::new(), 0);
+    let (mut out, mut first_index) = (Directional { texels: Vec::new(), rays: 0 }, 0);
     for (number, sheet) in (0..).zip(&maps.sheets) {
-        let Gathered { mut plate, frames } = gather(done, &arrivals, sheet, first_index, prt)?;
+        let Gathered { mut plate, frames, record, .. } = gather(done, &arrivals, sheet, first_index)?;
+        out.rays += record.rays[0] + record.rays[1];
         first_index += sheet.width * sheet.height;
         plate
             .values
@@ -73,7 +72,7 @@ fn all_directional(done: &Done<'_>, maps: &MapSettings, prt: &mut Prt) -> Result
             let mut coefficients = [[0.0; 3]; HARMONICS];
             coefficients.as_flattened_mut().copy_from_slice(row);
             let place = [texel / sheet.width, texel % sheet.width];
-            out.push(DirectionalTexel { sheet: number, place, coefficients });
+            out.texels.push(DirectionalTexel { sheet: number, place, coefficients });
         }
     }
     Ok(out)

@@ -25,12 +25,11 @@ pub(super) struct Grid {
 impl Grid {
     pub(super) fn of(scene: Option<Bounds>, settings: &VolumeSettings) -> Result<Self, Error> {
         settings.check()?;
-        let (min, max) = match settings.place {
-            VolumePlace::Box { min, max } => (min, max),
+        let (min, max, even) = match settings.place {
+            VolumePlace::Box { min, max } => (min, max, (max - min).max_element() / STEPS),
             VolumePlace::Auto => around(scene, settings.steps)?,
         };
         let size = max - min;
-        let even = size.max_element() / STEPS;
         let cells = match settings.steps {
             VolumeSteps::Probes(counts) => counts.map(|n| n - 1),
             VolumeSteps::Auto => fitting(size, even),
@@ -56,8 +55,8 @@ impl Grid {
     }
 }
 
-/// The box of a whole scene.
-fn around(scene: Option<Bounds>, steps: VolumeSteps) -> Result<(Vec3, Vec3), Error> {
+/// The box of a whole scene, and the step for where nothing is said.
+fn around(scene: Option<Bounds>, steps: VolumeSteps) -> Result<(Vec3, Vec3, f32), Error> {
     let bounds = scene.filter(|b| b.size().is_finite() && b.size().max_element() > 0.0);
     let Some(bounds) = bounds else {
         let allowed = "the scene has no extent that a volume could fill: give --volume-box";
@@ -74,7 +73,7 @@ fn around(scene: Option<Bounds>, steps: VolumeSteps) -> Result<(Vec3, Vec3), Err
         if size < widened { 0.5 * (size - widened) } else { INSET * step }
     };
     let inset = Vec3::from_array(std::array::from_fn(one));
-    Ok((bounds.min + inset, bounds.max - inset))
+    Ok((bounds.min + inset, bounds.max - inset, even))
 }
 
 /// Cells along each axis, no longer than a step.

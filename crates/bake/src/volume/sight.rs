@@ -144,7 +144,9 @@ impl<'a> Sight<'a> {
                 square += share * distance * distance;
                 total += share;
             }
-            [(sum / total) as f32, (square / total) as f32]
+            let mean = (sum / total) as f32;
+            // Rounding is no variance below zero.
+            [mean, ((square / total) as f32).max(mean * mean)]
         };
         hits.chunks_exact(self.rays).zip(self.shares.chunks_exact(self.rays)).flat_map(texel).collect()
     }

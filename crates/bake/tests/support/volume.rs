@@ -58,6 +58,12 @@ pub(crate) fn at_normal(coefficients: &[[f64; 3]; 9], normal: Vec3) -> [f64; 3] 
     std::array::from_fn(|c| coefficients.iter().zip(harmonics).map(|(value, y)| value[c] * y).sum())
 }
 
+/// Unit normals all around: the faces, edges and corners of a cube.
+pub(crate) fn normals() -> impl Iterator<Item = Vec3> {
+    let axis = |digit: usize| (digit % 3) as f32 - 1.0;
+    (0..27).filter_map(move |i| Vec3::new(axis(i), axis(i / 3), axis(i / 9)).try_normalize())
+}
+
 /// Irradiance / pi at a point for a normal.
 pub(crate) fn irradiance(volume: &Volume, point: Vec3, normal: Vec3, light: &[[f32; 3]], rule: Rule) -> [f64; 3] {
     let (corners, shares) = around(volume, point);
@@ -118,7 +124,8 @@ fn visible(volume: &Volume, probe: usize, point: Vec3, normal: Vec3) -> f64 {
     f64::from(volume.validity[probe]) * side * seen
 }
 
-/// Mean and mean square distance that a probe tells of a direction: of the nearest texel.
+/// Mean and mean square distance that a probe tells of a direction: between the middles of the four nearest texels; over the border of
+/// the square the map goes on where it is folded.
 fn told(volume: &Volume, probe: usize, direction: DVec3) -> [f64; 2] {
     let p = direction / (direction.x.abs() + direction.y.abs() + direction.z.abs());
     let mut flat = DVec2::new(p.x, p.y);
@@ -126,8 +133,32 @@ fn told(volume: &Volume, probe: usize, direction: DVec3) -> [f64; 2] {
         let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
         flat = DVec2::new((1.0 - p.y.abs()) * sign(p.x), (1.0 - p.x.abs()) * sign(p.y));
     }
-    let side = volume.resolution as usize;
-    let [column, row] = [flat.x, flat.y].map(|x| ((0.5 * (x + 1.0) * side as f64) as usize).min(side - 1));
-    let at = 2 * ((probe * side + row) * side + column);
-    [0, 1].map(|k| f64::from(volume.distances[at + k]))
+    let side = i64::from(volume.resolution);
+    let at = 0.5 * (flat + 1.0) * side as f64 - 0.5;
+    let low = at.floor();
+    let share = at - low;
+    let mut sum = [0.0; 2];
+    for (right, up) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+        let weight =
+            DVec2::new(if right == 1 { share.x } else { 1.0 - share.x }, if up == 1 { share.y } else { 1.0 - share.y });
+        let [column, row] = wrapped([low.x as i64 + right, low.y as i64 + up], side);
+        let texel = 2 * ((probe as i64 * side + row) * side + column) as usize;
+        for (sum, told) in sum.iter_mut().zip(&volume.distances[texel..]) {
+            *sum += weight.x * weight.y * f64::from(*told);
+        }
+    }
+    sum
+}
+
+/// The texel that one beyond the border is.
+fn wrapped([mut column, mut row]: [i64; 2], side: i64) -> [i64; 2] {
+    if !(0..side).contains(&column) {
+        column = column.clamp(0, side - 1);
+        row = side - 1 - row;
+    }
+    if !(0..side).contains(&row) {
+        row = row.clamp(0, side - 1);
+        column = side - 1 - column;
+    }
+    [column, row]
 }

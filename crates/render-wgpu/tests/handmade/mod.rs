@@ -1,14 +1,15 @@
 //! A scene made by hand that holds every kind of material: a sphere on a plane, leaves, glass and a lamp shade.
 //!
 //! Its transfer is the unshadowed closed form, tinted and darkened by formula, so that nothing has to be traced.
+#![allow(dead_code, reason = "each test uses its part")]
 
 use coeff_io::{
-    Achieved, AlphaMode, BandChoice, Bounces, Camera, Effects, Material, Mesh, Plan, Prt, Quality, Refine, Sampler,
-    Settings, Texture, TextureSlot, Transfer, Wrap,
+    Achieved, AlphaMode, BandChoice, Bounces, Camera, Effects, Layers, MapLight, Maps, Material, Mesh, Plan, Prt,
+    Quality, Refine, Sampler, Settings, Sheet, Texture, TextureSlot, Transfer, Wrap,
 };
 use glam::{Quat, Vec3};
 use probe_io::{Environment, Lamp};
-use sh_math::{Bands, zonal};
+use sh_math::{Bands, hemisphere::Basis, zonal};
 
 /// Bands of every handmade transfer.
 const BANDS: u32 = 4;
@@ -244,4 +245,29 @@ fn add_panes(prt: &mut Prt) {
 /// The rotation of the light in tests.
 pub(crate) fn rotation() -> Quat {
     Quat::from_rotation_y(0.8) * Quat::from_rotation_x(-0.3)
+}
+
+/// The whole scene with light maps on floor, ball, leaf and the blended pane; the rest is lit at its vertices. Ball and leaf have a normal
+/// map, the leaf without shine. The coordinates of the maps run beyond [0, 1].
+pub(crate) fn mapped(basis: Basis, light: &MapLight, rings: u32) -> Prt {
+    let mut prt = sphere_on_plane(1, rings);
+    prt.materials[2].normal_texture = slot(2, 0, TURNED);
+    let sheets = [[13, 9, 3], [6, 17, 1]].map(|size| sheet(basis, light, size));
+    let sheet_of_mesh = vec![Some(0), Some(1), Some(1), None, Some(0), None];
+    prt.maps = Some(Maps { basis, light: light.clone(), sheets: sheets.into(), sheet_of_mesh });
+    prt
+}
+
+/// Coefficients by formula: the first function is bright, all others vary as much as it does; the more bands the less.
+fn sheet(basis: Basis, light: &MapLight, [width, height, channels]: [u32; 3]) -> Sheet {
+    let count = (basis.count() * light.depth()) as u32;
+    let value = |layer: u32, x: u32, y: u32, channel: u32| {
+        let (function, i) = (layer / light.depth() as u32, layer % light.depth() as u32);
+        let wave = (1.3 * x as f32 + 0.7 * layer as f32).sin() * (0.9 * y as f32 + channel as f32).cos();
+        let mean = if function == 0 { 3.0 } else { 0.0 };
+        (mean + wave) / (1.0 + i as f32)
+    };
+    let texels = (0..count).flat_map(|layer| (0..height).flat_map(move |y| (0..width).map(move |x| (layer, x, y))));
+    let values = texels.flat_map(|(layer, x, y)| (0..channels).map(move |channel| value(layer, x, y, channel)));
+    Sheet { layers: Layers::exact([width, height, count, channels], &values.collect::<Vec<_>>()) }
 }

@@ -6,6 +6,7 @@
 
 mod atrium;
 mod boxes;
+mod bumps;
 mod patch;
 mod planes;
 mod rooms;
@@ -26,6 +27,7 @@ pub const BUILTINS: &[(&str, &str)] = &[
     ("half-blocked-plane", "a black wall on a plane hides an exactly known share of the sky"),
     ("facing-planes", "two squares that face each other: exactly known form factors"),
     ("sphere-on-plane", "a sphere resting on a plane: its shadow is 1 - (r/d)^3"),
+    ("bumps", "a ball over a plane with a bumpy normal map and light-map coordinates"),
     ("sphere", "one sphere under the open sky: every receiver is unshadowed"),
     ("bowl", "half an integrating sphere: a geometric series of bounces"),
     ("cornell-box", "red and green walls, two blocks, light from the front and a roof opening"),
@@ -43,6 +45,7 @@ pub fn builtin(name: &str) -> Option<Scene> {
         "half-blocked-plane" => planes::half_blocked_plane(),
         "facing-planes" => planes::facing_planes(),
         "sphere-on-plane" => planes::sphere_on_plane(),
+        "bumps" => bumps::bumps(),
         "sphere" => round::sphere(),
         "bowl" => round::bowl(),
         "cornell-box" => boxes::cornell_box(),

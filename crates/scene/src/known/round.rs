@@ -66,7 +66,7 @@ pub(super) fn ball(center: Vec3, radius: f32, around: u32, rows: u32) -> Mesh {
 }
 
 /// Unit direction at the share `s` of a turn about y and the share `polar` of the way from +y to -y.
-fn direction(s: f32, polar: f32) -> Vec3 {
+pub(super) fn direction(s: f32, polar: f32) -> Vec3 {
     let (sin_turn, cos_turn) = turn(s);
     let (sin_polar, cos_polar) = turn(0.5 * polar);
     Vec3::new(sin_polar * sin_turn, cos_polar, sin_polar * cos_turn)

@@ -1,0 +1,46 @@
+//! How light maps are drawn: in which basis, with how many functions, with or without the surfaces' colours.
+
+use crate::console::Console;
+use crate::maps;
+use coeff_io::{MapLight, Prt};
+use sh_math::hemisphere::Basis;
+
+/// How what was baked is looked at.
+#[derive(Debug, clap::Args)]
+pub(crate) struct LookOptions {
+    /// The basis that light maps are drawn in, such as modified-h6, sh9, hl2, hsh9, makhotkin9 or zernike6; their own by default.
+    #[arg(long, value_name = "NAME", value_parser = maps::basis)]
+    pub(crate) basis: Option<Basis>,
+    /// Draws only the first N functions of the basis: modified-h6 has 6, 4 and 1, others what is a best fit.
+    #[arg(long, value_name = "N")]
+    pub(crate) functions: Option<u32>,
+    /// The surfaces' own colours; off shows the light alone.
+    #[arg(long, value_enum, default_value_t = Albedo::On)]
+    albedo: Albedo,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Albedo {
+    /// As the materials have them.
+    On,
+    /// White.
+    Off,
+}
+
+impl LookOptions {
+    /// Whether surfaces have their own colours.
+    pub(crate) fn albedo(&self) -> bool {
+        self.albedo == Albedo::On
+    }
+}
+
+/// Tells where the maps of a file hold the light of another probe than the one that is shown.
+pub(crate) fn tell(prt: &Prt, shown: &str, console: &Console) {
+    if let Some(MapLight::Fixed { probe, .. }) = prt.maps.as_ref().map(|maps| &maps.light)
+        && probe != shown
+    {
+        console.notice(&format!(
+            "the light maps hold the light of {probe}; {shown} is in the sky, in reflections and where there are no maps"
+        ));
+    }
+}
