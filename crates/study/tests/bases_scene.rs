@@ -47,10 +47,13 @@ enum Way {
     Products,
 }
 
+/// Functions and signal at a direction, and its solid angle.
+type Sample = ([f64; 9], [f64; 3], f64);
+
 /// The integrated square error of a texel, mean of its channels: samples of the signal itself, no harmonics' form.
 fn by_brute_force(basis: Basis, texel: &DirectionalTexel, way: Way) -> f64 {
     let n = basis.count();
-    let points: Vec<([f64; 9], [f64; 3], f64)> = hemisphere_tanh_sinh()
+    let points: Vec<Sample> = hemisphere_tanh_sinh()
         .into_iter()
         .map(|(direction, weight)| {
             let mut functions = [0.0; 9];
@@ -58,7 +61,7 @@ fn by_brute_force(basis: Basis, texel: &DirectionalTexel, way: Way) -> f64 {
             (functions, signal(texel, DVec3::from(direction)), weight)
         })
         .collect();
-    let total = |value: &dyn Fn(&([f64; 9], [f64; 3], f64)) -> f64| points.iter().map(|p| p.2 * value(p)).sum::<f64>();
+    let total = |value: &dyn Fn(&Sample) -> f64| points.iter().map(|p| p.2 * value(p)).sum::<f64>();
     let of_channel = |c: usize| {
         let right: Vec<f64> = (0..n).map(|i| total(&|p| p.0[i] * p.1[c])).collect();
         let gram = || (0..n).map(|i| (0..n).map(|j| total(&|p| p.0[i] * p.0[j])).collect()).collect();
