@@ -98,6 +98,9 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
         console.print(&comparison.text())?;
         console.print(&comparison.recommendation())?;
         console.print(&format!("  {}", comparison.options()))?;
+        if let Some(remark) = comparison.remark() {
+            console.print(&remark)?;
+        }
     }
     console.notice(&format!("wrote {} into {}", FILES.join(", "), folder.display()));
     Ok(())
@@ -195,6 +198,7 @@ fn as_json(comparison: &Comparison) -> Value {
             "basis": chosen.basis.name(),
             "encoding": chosen.stored[choice.stored].encoding.id(),
             "options": comparison.options(),
+            "remark": comparison.remark(),
         },
     })
 }

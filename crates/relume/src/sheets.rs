@@ -89,8 +89,12 @@ fn mapped(scene: &Scene) -> Vec<usize> {
     (0..scene.meshes.len()).filter(|&mesh| scene.material(mesh).blocks_rays()).collect()
 }
 
-/// Whether a normal map is drawn on a mesh.
-pub(crate) fn is_bent(scene: &Scene, mesh: usize) -> bool {
+/// Whether a normal map is drawn on some surface that gets light maps.
+pub(crate) fn has_normal_maps(scene: &Scene) -> bool {
+    mapped(scene).into_iter().any(|mesh| is_bent(scene, mesh))
+}
+
+fn is_bent(scene: &Scene, mesh: usize) -> bool {
     scene.material(mesh).normal_texture.is_some() && !scene.meshes[mesh].tangents.is_empty()
 }
 

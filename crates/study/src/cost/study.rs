@@ -8,7 +8,8 @@ use super::report::{Knob, Report, Run, View, WorstReceiver};
 use super::resolution::{self, Resolution};
 use super::trials::{Trial, as_asked, trials};
 use super::truth::{Reference, reference};
-use super::{Error, ProgressFn, Request, Targets, frames, front, views};
+use super::{Error, ProgressFn, Request, Targets, frames, front, light_maps, views};
+use crate::bases::scene::Comparison;
 use coeff_io::{Prt, Transfer};
 
 /// Receivers in the list of the worst.
@@ -28,8 +29,9 @@ pub fn study(request: &Request<'_>, progress: ProgressFn<'_>) -> Result<Report, 
     let mut sweep =
         Sweep { request, baked: Vec::new(), asked: None, shown: None, left_out: Vec::new(), checks: Vec::new() };
     sweep.trials(&mut bakes)?;
+    let bases = light_maps::study(request, &mut bakes, &mut sweep.left_out)?;
     let resolution = resolution::study(request, &reference.truth, &bakes, &mut sweep.left_out)?;
-    sweep.report(reference, resolution, &bakes)
+    sweep.report(reference, resolution, bases, &bakes)
 }
 
 /// A run before it is compared, and its coefficients.
@@ -98,6 +100,7 @@ impl Sweep<'_> {
         mut self,
         reference: Reference,
         resolution: Option<Resolution>,
+        bases: Option<Comparison>,
         bakes: &Bakes<'_>,
     ) -> Result<Report, Error> {
         bakes.tell("comparing", 0, 1)?;
@@ -133,6 +136,7 @@ impl Sweep<'_> {
             small_front,
             advice,
             resolution,
+            bases,
             frames,
             asked: self.asked,
             shown,

@@ -2,6 +2,7 @@
 
 use super::{Choice, Comparison, Goal, Row, Stored, Worst};
 use crate::plot::chart::Unit;
+use coeff_io::Encoding;
 use sh_math::hemisphere::Basis;
 use std::fmt::Write;
 
@@ -67,11 +68,28 @@ impl Comparison {
         }
     }
 
+    /// What must be said where an ordinary light map is as small as what is recommended and errs no more as drawn: normal maps that hardly
+    /// bend, to which least squares over the whole hemisphere are not tuned.
+    #[must_use]
+    pub fn remark(&self) -> Option<String> {
+        let Choice { row, stored, .. } = self.choice;
+        let chosen = &self.rows[row].stored[stored];
+        let plain = self.rows.iter().find(|row| row.basis == Basis::ModifiedH1).filter(|_| self.has_normal_maps)?;
+        let as_good =
+            plain.stored.iter().find(|plain| plain.bytes <= chosen.bytes && plain.drawn.rms <= chosen.drawn.rms)?;
+        Some(format!(
+            "the normal maps hardly bend: an ordinary light map in {} errs by {} in {}, but shows nothing of them",
+            as_good.encoding.id(),
+            Unit::Share.write(as_good.drawn.rms),
+            Unit::Bytes.write(as_good.bytes as f64)
+        ))
+    }
+
     /// The options of `relume bake` that make what is recommended, beside those of the sheets and of the light.
     #[must_use]
     pub fn options(&self) -> String {
-        let (row, stored) = (&self.rows[self.choice.row], &self.rows[self.choice.row].stored[self.choice.stored]);
-        format!("--storage texture --light fixed --basis {} --encoding {}", typed(row.basis), stored.encoding.id())
+        let row = &self.rows[self.choice.row];
+        row.options(row.stored[self.choice.stored].encoding)
     }
 
     fn notes(&self) -> String {
@@ -96,6 +114,13 @@ impl Comparison {
         let Worst { sheet, place: [y, x], position: [a, b, c], mesh, .. } = &row.worst;
         let place = format!("is row {y}, column {x} of sheet {sheet}: ({a:.3}, {b:.3}, {c:.3}) on '{mesh}'");
         (row.basis.name(), place)
+    }
+}
+
+impl Row {
+    /// The options of `relume bake` for this basis in an encoding.
+    pub(crate) fn options(&self, encoding: Encoding) -> String {
+        format!("--storage texture --light fixed --basis {} --encoding {}", typed(self.basis), encoding.id())
     }
 }
 
