@@ -8,8 +8,8 @@ const HEAD: &str = "knob,setting,can_be_typed,bands,receivers,channels,bounces,v
     transfer_error_median,transfer_error_p95,transfer_error_worst,radiance_error,radiance_error_all_bands,on_fast_front,\
     on_small_front,longest_edge_metres,milliseconds_per_frame\n";
 
-/// The study as a CSV file: one line per run, per mesh, per basis of light maps in an encoding (its error as drawn under radiance) and per renderer;
-/// fields that do not apply are empty.
+/// The study as a CSV file: one line per run, per mesh, per basis of light maps in an encoding (its error as drawn stands under radiance)
+/// and per renderer; fields that do not apply are empty.
 #[must_use]
 pub fn csv(report: &Report) -> String {
     let mut text = HEAD.to_owned();

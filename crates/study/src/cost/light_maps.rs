@@ -57,3 +57,73 @@ pub(super) fn study(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cost::{Report, Targets, csv, page, report::Machine, sample};
+    use coeff_io::{Bounces, Quality, Settings};
+    use std::ops::ControlFlow;
+
+    /// A ball and a square with a normal map, 64 rays per texel, within so many seconds.
+    fn studied(budget: f64) -> (Option<Comparison>, Vec<String>) {
+        let scene = scene::builtin("bumps").unwrap();
+        let meshes = (0..scene.meshes.len()).collect();
+        let sheets = [SheetSettings { meshes, width: 32, height: 32, directional: true }];
+        let settings = Settings {
+            bands: 3,
+            quality: Quality::Rays(64),
+            bounces: Bounces::Fixed(0),
+            refine: coeff_io::Refine::Off,
+            ..bake::settings::standard()
+        };
+        let request = Request {
+            scene: &scene,
+            environment: &probe_io::builtin("sky").unwrap(),
+            settings: settings.clone(),
+            targets: Targets { error: 0.2, seconds: None, bytes: None },
+            budget,
+            machine: Machine { threads: 1, system: "test".into(), version: "0".into() },
+            light_maps: Some(LightMaps { scene: &scene, sheets: &sheets }),
+        };
+        let mut bakes = Bakes::new(&scene, &settings, budget, &|_| ControlFlow::Continue(())).unwrap();
+        let mut left_out = Vec::new();
+        let found = study(&request, &mut bakes, &mut left_out).unwrap();
+        (found, left_out)
+    }
+
+    /// An hour is enough on any machine; it is not waited for.
+    #[test]
+    fn bases_are_part_of_the_report() {
+        let (bases, left_out) = studied(3600.0);
+        let bases = bases.unwrap();
+        assert!(left_out.is_empty() && bases.has_normal_maps && bases.texels > 400, "{left_out:?}");
+        let report = Report { bases: Some(bases), ..sample::report() };
+        let (text, table) = (page(&report).unwrap(), csv(&report));
+        let said = [
+            "<h2>Bases of light maps</h2>",
+            "modified H 6",
+            "for an error of 20 %",
+            "--encoding",
+            "--probe builtin:sky",
+        ];
+        assert!(said.iter().all(|part| text.contains(part)), "{text}");
+        assert!(
+            !text.contains("src=\"http") && !text.contains("href=") && !text.contains("xmlns"),
+            "needs nothing else"
+        );
+        let columns = table.lines().next().unwrap().split(',').count();
+        let rows: Vec<&str> = table.lines().filter(|line| line.starts_with("basis of light maps,")).collect();
+        assert_eq!(rows.len(), 14 * 4);
+        assert!(rows.iter().all(|row| row.split(',').count() == columns), "{table}");
+    }
+
+    /// Without time nothing is baked, the page says so, and has no such section.
+    #[test]
+    fn bases_are_part_of_the_report_can_fail() {
+        let (bases, left_out) = studied(0.0);
+        assert!(bases.is_none() && left_out.len() == 1 && left_out[0].contains("bases of light maps"), "{left_out:?}");
+        let text = page(&Report { left_out, ..sample::report() }).unwrap();
+        assert!(!text.contains("<h2>Bases") && text.contains("bases of light maps: "), "{text}");
+    }
+}
