@@ -47,6 +47,15 @@ pub enum Unit {
     Share,
 }
 
+/// Where the legend stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Corner {
+    /// Where what is dear and far off would be.
+    UpperRight,
+    /// Under the front, where nothing is unless the cheapest is the closest too.
+    LowerLeft,
+}
+
 /// Points of one kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
@@ -80,6 +89,8 @@ pub struct Chart {
     pub labels: Vec<Label>,
     /// The point with a ring.
     pub chosen: Option<[f64; 2]>,
+    /// Where the legend stands.
+    pub legend: Corner,
 }
 
 type Plane = Cartesian2d<LogCoord<f64>, LogCoord<f64>>;
@@ -140,7 +151,10 @@ impl Chart {
         self.draw_words(&chart, root)?;
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
+            .position(match self.legend {
+                Corner::UpperRight => SeriesLabelPosition::UpperRight,
+                Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
+            })
             .background_style(TRANSPARENT)
             .border_style(TRANSPARENT)
             .label_font(words(HPos::Left))
@@ -294,6 +308,7 @@ mod tests {
             front: vec![[0.1, 0.1], [1.0, 0.02], [9.0, 0.0]],
             labels: vec![Label { at: [1.0, 0.02], text: "--rays 256".into() }],
             chosen: Some([1.0, 0.02]),
+            legend: Corner::UpperRight,
         }
     }
 

@@ -34,7 +34,8 @@ pub struct Choice {
 /// goal, the least error or the fewest bytes there are.
 ///
 /// An ordinary light map is chosen where no normal map is in use, and only there. Times within a tenth of each other are the same, errors
-/// within a hundredth; what is still equal is decided for the last of [`Basis::ALL`], the modified H-basis, which can be cut to a light map.
+/// within a hundredth. What is still equal is decided by the error over the hemisphere, then for the last of [`Basis::ALL`], the modified
+/// H-basis, which can be cut to a light map.
 ///
 /// # Panics
 /// When there is no row to choose.
@@ -58,6 +59,7 @@ pub(super) fn choose(rows: &[Row], has_normal_maps: bool, goal: Goal) -> Choice 
         (Goal::Error(_), false) => least(least(least(all, error, SAME_ERROR), bytes, 0.0), time, CLOCK),
         (Goal::Bytes(_), false) => least(least(least(all, bytes, 0.0), error, SAME_ERROR), time, CLOCK),
     };
+    let left = least(left, |pair| of(pair).0.relative, SAME_ERROR);
     let &(row, stored) = left.last().expect("every comparison has all bases");
     Choice { goal, row, stored, met }
 }
@@ -117,6 +119,10 @@ mod tests {
         let mut rows = rows();
         rows[4].nanoseconds = 5.0;
         assert_eq!(choose(&rows, true, Goal::Error(0.03)).row, 2);
+        rows[4].nanoseconds = 4.2;
+        rows[4].relative = 0.1;
+        rows[2].relative = 0.05;
+        assert_eq!(choose(&rows, true, Goal::Error(0.03)).row, 2, "then the error over the hemisphere");
         rows[4].stored[1].bytes = 119;
         assert_eq!(choose(&rows, true, Goal::Error(0.03)).row, 4, "fewer bytes go before");
     }
