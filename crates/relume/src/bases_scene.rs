@@ -81,6 +81,7 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     let request = Request {
         scene: &scene,
         light: &environment.name,
+        sheet_options: &choice.options(),
         sheets: &sheets,
         found: &found,
         goal: options.goal(),

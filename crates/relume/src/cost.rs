@@ -85,7 +85,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     }
     let environment = options.probe.load(console)?;
     output::check_all(&options.output, &FILES)?;
-    let mapped = options.light_maps(&scene, console)?;
+    let (mapped, sheet_options) = (options.light_maps(&scene, console)?, options.sheet_choice().options());
     interrupt::watch()?;
     let targets = Targets { error: options.target_error, seconds: options.target_time, bytes: options.target_size };
     let request = Request {
@@ -95,7 +95,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         targets,
         budget: options.budget,
         machine: machine(),
-        light_maps: mapped.as_ref().map(|(scene, sheets)| LightMaps { scene, sheets }),
+        light_maps: mapped.as_ref().map(|(scene, sheets)| LightMaps { scene, sheet_options: &sheet_options, sheets }),
     };
     let report = {
         let progress = console.progress();
@@ -118,14 +118,17 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
 }
 
 impl Options {
+    fn sheet_choice(&self) -> SheetChoice {
+        SheetChoice { texels: self.texels, unwrap: false, padding: 2 }
+    }
+
     /// The scene with coordinates of light maps and their sheets, where normal maps or the user ask for them.
     fn light_maps(&self, scene: &Scene, console: &Console) -> Result<Option<(Scene, Vec<SheetSettings>)>> {
         if !self.light_maps && !has_normal_maps(scene) {
             return Ok(None);
         }
         let mut scene = scene.clone();
-        let sheets = SheetChoice { texels: self.texels, unwrap: false, padding: 2 }.sheets(&mut scene, console);
-        match sheets {
+        match self.sheet_choice().sheets(&mut scene, console) {
             Ok(sheets) => Ok(Some((scene, sheets))),
             Err(error) if !self.light_maps => {
                 console.notice(&format!("bases of light maps are left out: {error}"));

@@ -23,6 +23,12 @@ pub(crate) struct SheetChoice {
 }
 
 impl SheetChoice {
+    /// The options of `relume bake` that make the same choice.
+    pub(crate) fn options(self) -> String {
+        let unwrap = if self.unwrap { " --unwrap" } else { "" };
+        format!("--texels {}{unwrap}", self.texels)
+    }
+
     /// The sheets for a scene, whose surfaces are unwrapped where their own coordinates do not serve. What has normal maps is marked as
     /// directional.
     pub(crate) fn sheets(self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {

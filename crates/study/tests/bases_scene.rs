@@ -277,7 +277,7 @@ fn a_scene_without_normal_maps_gets_a_light_map() {
     let plain = compare(&study::bases::scene::Request { sheets: &sheets, ..request(of, Goal::Error(0.02)) }).unwrap();
     assert!(!plain.has_normal_maps);
     assert_eq!(plain.rows[plain.choice.row].basis, Basis::ModifiedH1);
-    assert!(plain.options().contains("--basis modified-h1"), "{}", plain.options());
+    assert!(plain.options().contains("--texels 24 --basis modified-h1"), "{}", plain.options());
     let exact = plain.rows[plain.choice.row].stored[0].drawn.rms;
     assert!(exact < 1e-6, "a light map is exact at the surface's own normal: {exact}");
     let bent = comparison(of);

@@ -36,6 +36,8 @@ pub struct Request<'a> {
     pub scene: &'a Scene,
     /// The name of the light.
     pub light: &'a str,
+    /// The options of `relume bake` that make the sheets.
+    pub sheet_options: &'a str,
     /// The sheets that were baked.
     pub sheets: &'a [SheetSettings],
     /// What arrives at their texels.
@@ -53,6 +55,8 @@ pub struct Comparison {
     pub scene: String,
     /// The light as the user named it.
     pub light: String,
+    /// The options of `relume bake` that make the sheets.
+    pub sheet_options: String,
     /// Texels that see something.
     pub texels: usize,
     /// Texels of all sheets, covered or not: what bytes are reckoned for.
@@ -170,6 +174,7 @@ pub fn compare(request: &Request<'_>) -> Result<Comparison, Empty> {
     Ok(Comparison {
         scene: scene.name.clone(),
         light: request.light.to_owned(),
+        sheet_options: request.sheet_options.to_owned(),
         texels: found.texels.len(),
         sheet_texels: sheets.iter().map(|sheet| u64::from(sheet.width) * u64::from(sheet.height)).sum(),
         has_normal_maps,

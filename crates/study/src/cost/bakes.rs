@@ -119,7 +119,7 @@ impl<'a> Bakes<'a> {
         Ok(Timed { prt, seconds: self.split + began.elapsed().as_secs_f64() })
     }
 
-    /// Bakes what arrives at the texels of light maps, of a scene that is not split yet; `None` where the time that is left ran out.
+    /// Bakes what arrives at the texels of light maps, of a scene that is not split yet; `None` where it took more than `most` seconds.
     pub(super) fn directional(
         &mut self,
         name: &str,
@@ -127,10 +127,11 @@ impl<'a> Bakes<'a> {
         settings: &Settings,
         sheets: &[SheetSettings],
         light: &FixedLight,
+        most: f64,
     ) -> Result<Option<Directional>, Error> {
         self.count += 1;
         self.tell(name, 0, 1)?;
-        let (progress, run, deadline) = (self.progress, self.count, self.budget - self.reserved());
+        let (progress, run, deadline) = (self.progress, self.count, self.spent() + most);
         let is_late = || self.spent() > deadline;
         let found = bake::directional(scene, settings, sheets, light, &|now| {
             if is_late() {

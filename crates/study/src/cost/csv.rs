@@ -22,12 +22,12 @@ pub fn csv(report: &Report) -> String {
             line(&mut text, run, [String::new(), String::new()], edge.to_string());
         }
     }
-    for row in report.bases.iter().flat_map(|bases| &bases.rows) {
+    for (bases, row) in report.bases.iter().flat_map(|bases| bases.rows.iter().map(move |row| (bases, row))) {
         for stored in &row.stored {
             let _ = writeln!(
                 text,
                 "basis of light maps,{},true,,,3,,,,,{},,,,{},,,,,",
-                row.options(stored.encoding),
+                bases.options_of(row.basis, stored.encoding),
                 stored.bytes,
                 stored.drawn.rms
             );

@@ -9,11 +9,16 @@ use scene::Scene;
 use scene::lightmap::texels;
 use sh_math::Bands;
 
+/// Share of the time left that they may take: the knobs of the bake come after them.
+const SHARE: f64 = 0.5;
+
 /// Light maps to be judged.
 #[derive(Debug, Clone, Copy)]
 pub struct LightMaps<'a> {
     /// The scene with the light-map coordinates of the sheets.
     pub scene: &'a Scene,
+    /// The options of `relume bake` that make the sheets.
+    pub sheet_options: &'a str,
     /// The sheets.
     pub sheets: &'a [SheetSettings],
 }
@@ -24,31 +29,38 @@ pub(super) fn study(
     bakes: &mut Bakes<'_>,
     left_out: &mut Vec<String>,
 ) -> Result<Option<Comparison>, Error> {
-    let Some(LightMaps { scene, sheets }) = request.light_maps else { return Ok(None) };
+    let Some(LightMaps { scene, sheet_options, sheets }) = request.light_maps else { return Ok(None) };
     let settings = as_asked(request).settings;
     let vertices: usize = bakes.scene.meshes.iter().map(|mesh| mesh.positions.len()).sum();
     let count = |sheet: &SheetSettings| texels(scene, &sheet.meshes, sheet.width, sheet.height).len();
     let texels: usize = sheets.iter().map(count).sum();
     // The vertices are baked first, since they lend light to the texels.
     let needed = bakes.predict(&settings)?.seconds * (1.0 + texels as f64 / vertices.max(1) as f64);
-    let left = bakes.left().max(0.0);
+    let left = SHARE * bakes.left().max(0.0);
     if needed > left {
         left_out.push(format!(
-            "bases of light maps: {texels} texels would take about {needed:.1} s of the {left:.1} s left"
+            "bases of light maps: {texels} texels would take about {needed:.1} s of the {left:.1} s for them"
         ));
         return Ok(None);
     }
     let bands = Bands::new(settings.bands).expect("the settings were checked");
     let coefficients = sh_math::project(bands, request.environment.samples()).values;
     let light = FixedLight { name: request.environment.name.clone(), coefficients };
-    let Some(found) = bakes.directional("light maps", scene, &settings, sheets, &light)? else {
-        left_out.push(format!("bases of light maps: {texels} texels took longer than the {left:.1} s left"));
+    let Some(found) = bakes.directional("light maps", scene, &settings, sheets, &light, left)? else {
+        left_out.push(format!("bases of light maps: {texels} texels took longer than the {left:.1} s for them"));
         return Ok(None);
     };
     bakes.tell("comparing bases", 0, 1)?;
     let goal = Goal::Error(f64::from(request.targets.error));
-    let compared =
-        Compared { scene, light: &request.environment.name, sheets, found: &found, goal, nanoseconds: &nanoseconds() };
+    let compared = Compared {
+        scene,
+        light: &request.environment.name,
+        sheet_options,
+        sheets,
+        found: &found,
+        goal,
+        nanoseconds: &nanoseconds(),
+    };
     match compare(&compared) {
         Ok(comparison) => Ok(Some(comparison)),
         Err(empty) => {
@@ -84,7 +96,7 @@ mod tests {
             targets: Targets { error: 0.2, seconds: None, bytes: None },
             budget,
             machine: Machine { threads: 1, system: "test".into(), version: "0".into() },
-            light_maps: Some(LightMaps { scene: &scene, sheets: &sheets }),
+            light_maps: Some(LightMaps { scene: &scene, sheet_options: "--texels 32", sheets: &sheets }),
         };
         let mut bakes = Bakes::new(&scene, &settings, budget, &|_| ControlFlow::Continue(())).unwrap();
         let mut left_out = Vec::new();

@@ -237,7 +237,9 @@ impl Chart {
         let all = self.series.iter().flat_map(|s| &s.points).chain(&self.front).map(|p| p[axis]);
         let sound = all.filter(|v| *v > 0.0 && v.is_finite());
         let (low, high) = sound.fold((f64::INFINITY, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
-        if low > high { [1e-3, 1.0] } else { [low / 1.6, high * 1.6] }
+        // A legend below the front has room of its own.
+        let below = if axis == 1 && self.legend == Corner::LowerLeft { 5.0 } else { 1.6 };
+        if low > high { [1e-3, 1.0] } else { [low / below, high * 1.6] }
     }
 
     /// A point within the ranges; what is 0 stands at the end.

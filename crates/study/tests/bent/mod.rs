@@ -70,5 +70,13 @@ fn bump(scene: &mut Scene, meshes: &[usize]) {
 pub(crate) fn request(of: &Baked, goal: Goal) -> Request<'_> {
     static TIMES: OnceLock<Vec<f64>> = OnceLock::new();
     let nanoseconds = TIMES.get_or_init(|| sh_math::hemisphere::Basis::ALL.map(|basis| basis.count() as f64).to_vec());
-    Request { scene: &of.scene, light: "test", sheets: &of.sheets, found: &of.found, goal, nanoseconds }
+    Request {
+        scene: &of.scene,
+        light: "test",
+        sheet_options: "--texels 24",
+        sheets: &of.sheets,
+        found: &of.found,
+        goal,
+        nanoseconds,
+    }
 }

@@ -85,11 +85,17 @@ impl Comparison {
         ))
     }
 
-    /// The options of `relume bake` that make what is recommended, beside those of the sheets and of the light.
+    /// The options of `relume bake` that make what is recommended, beside those of the light and of the rays.
     #[must_use]
     pub fn options(&self) -> String {
         let row = &self.rows[self.choice.row];
-        row.options(row.stored[self.choice.stored].encoding)
+        self.options_of(row.basis, row.stored[self.choice.stored].encoding)
+    }
+
+    /// The same for any basis in any encoding.
+    pub(crate) fn options_of(&self, basis: Basis, encoding: Encoding) -> String {
+        let (basis, encoding) = (typed(basis), encoding.id());
+        format!("--storage texture --light fixed {} --basis {basis} --encoding {encoding}", self.sheet_options)
     }
 
     fn notes(&self) -> String {
@@ -114,13 +120,6 @@ impl Comparison {
         let Worst { sheet, place: [y, x], position: [a, b, c], mesh, .. } = &row.worst;
         let place = format!("is row {y}, column {x} of sheet {sheet}: ({a:.3}, {b:.3}, {c:.3}) on '{mesh}'");
         (row.basis.name(), place)
-    }
-}
-
-impl Row {
-    /// The options of `relume bake` for this basis in an encoding.
-    pub(crate) fn options(&self, encoding: Encoding) -> String {
-        format!("--storage texture --light fixed --basis {} --encoding {}", typed(self.basis), encoding.id())
     }
 }
 
