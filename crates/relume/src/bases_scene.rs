@@ -2,6 +2,7 @@
 
 use crate::bases::write;
 use crate::console::Console;
+use crate::draw::Window;
 use crate::sheets::{SMALLEST, SheetChoice};
 use crate::source::{self, ProbeSource, ReadOptions, SceneSource};
 use crate::usage::Usage;
@@ -46,6 +47,9 @@ pub(crate) struct OnScene {
     /// Number of bands of the light.
     #[arg(long, value_name = "N", default_value_t = bake::settings::standard().bands, requires = "scene")]
     bands: u32,
+    /// What is done against ringing of the light, as for `bake --light fixed`.
+    #[arg(long, value_enum, default_value_t = Window::None, requires = "scene")]
+    window: Window,
     /// Fixed number of rays per receiver and texel.
     #[arg(long, value_name = "N", conflicts_with = "error", requires = "scene")]
     rays: Option<u32>,
@@ -77,11 +81,15 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     let choice = SheetChoice { texels: options.texels, unwrap: options.unwrap, padding: 2 };
     let sheets = choice.sheets(&mut scene, console)?;
     interrupt::watch()?;
-    let found = bake(&scene, &settings, &sheets, &environment, console)?;
+    let found = bake(&scene, &settings, &sheets, &environment, options.window, console)?;
+    let bake_options = match options.window {
+        Window::None => choice.options(),
+        Window::Auto => format!("--window auto {}", choice.options()),
+    };
     let request = Request {
         scene: &scene,
         light: &environment.name,
-        sheet_options: &choice.options(),
+        sheet_options: &bake_options,
         sheets: &sheets,
         found: &found,
         goal: options.goal(),
@@ -113,10 +121,11 @@ fn bake(
     settings: &Settings,
     sheets: &[SheetSettings],
     environment: &Environment,
+    window: Window,
     console: &Console,
 ) -> Result<Directional> {
     let bands = Bands::new(settings.bands).ok_or_else(|| Usage(format!("--bands {}: use 1 to 32", settings.bands)))?;
-    let coefficients = sh_math::project(bands, environment.samples()).values;
+    let coefficients = window.apply(&sh_math::project(bands, environment.samples())).values;
     let light = FixedLight { name: environment.name.clone(), coefficients };
     let progress = console.progress();
     bake::directional(scene, settings, sheets, &light, &baking::watched(&progress, None)).map_err(baking::fault)
@@ -192,6 +201,7 @@ fn as_json(comparison: &Comparison) -> Value {
         "normals": if comparison.has_normal_maps { PICKED } else { 1 },
         "mean": comparison.mean,
         "drawn_mean": comparison.drawn_mean,
+        "negative_share": comparison.negative,
         "bases": comparison.rows.iter().map(row).collect::<Vec<_>>(),
         "recommended": {
             "goal": goal,

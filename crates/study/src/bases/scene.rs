@@ -36,7 +36,7 @@ pub struct Request<'a> {
     pub scene: &'a Scene,
     /// The name of the light.
     pub light: &'a str,
-    /// The options of `relume bake` that make the sheets.
+    /// The options of `relume bake` that make the sheets and, where it is windowed, the light.
     pub sheet_options: &'a str,
     /// The sheets that were baked.
     pub sheets: &'a [SheetSettings],
@@ -55,7 +55,7 @@ pub struct Comparison {
     pub scene: String,
     /// The light as the user named it.
     pub light: String,
-    /// The options of `relume bake` that make the sheets.
+    /// The options of `relume bake` that make the sheets and, where it is windowed, the light.
     pub sheet_options: String,
     /// Texels that see something.
     pub texels: usize,
@@ -67,6 +67,8 @@ pub struct Comparison {
     pub mean: f64,
     /// Mean of irradiance / pi at the normals that are drawn.
     pub drawn_mean: f64,
+    /// Share of the irradiance that is drawn that lies below 0, which no light does: ringing of a light in few bands. Eight bits make it 0.
+    pub negative: f64,
     /// One per basis, in the order of [`Basis::ALL`].
     pub rows: Vec<Row>,
     /// What to take.
@@ -180,6 +182,7 @@ pub fn compare(request: &Request<'_>) -> Result<Comparison, Empty> {
         has_normal_maps,
         mean,
         drawn_mean: views.mean,
+        negative: views.negative,
         choice: choice::choose(&rows, has_normal_maps, request.goal),
         rows,
     })

@@ -19,6 +19,8 @@ pub(super) struct Views<'a> {
     looks: Vec<Look<'a>>,
     /// Mean of irradiance / pi over texels, normals and channels.
     pub(super) mean: f64,
+    /// Share of it that is below 0.
+    pub(super) negative: f64,
 }
 
 /// One texel.
@@ -50,7 +52,11 @@ impl<'a> Views<'a> {
         let looks: Vec<Look<'_>> = found.texels.iter().step_by(step).map(look).collect();
         let of_look = |look: &Look<'_>| look.truth.iter().flatten().sum::<f64>() / (3 * look.truth.len()) as f64;
         let mean = looks.iter().map(of_look).sum::<f64>() / looks.len().max(1) as f64;
-        Self { normals, looks, mean }
+        let below = |look: &Look<'_>| {
+            look.truth.iter().flatten().filter(|value| **value < 0.0).count() as f64 / (3 * look.truth.len()) as f64
+        };
+        let negative = looks.iter().map(below).sum::<f64>() / looks.len().max(1) as f64;
+        Self { normals, looks, mean, negative }
     }
 
     /// The error of coefficients of `basis` as decoded, `[sheet][function][row][column][channel]`.

@@ -105,11 +105,18 @@ impl Comparison {
         } else {
             "at the surface's own normal, since no normal map is in use".to_owned()
         };
+        let ringing = match self.negative {
+            0.0 => String::new(),
+            share => format!(
+                "{} of the irradiance drawn is below 0: ringing of a light in few bands, which u8 makes 0; see --window auto.\n",
+                Unit::Share.write(share)
+            ),
+        };
         format!(
             "\n{} texels that see something, mean irradiance / pi {:.4} over the hemisphere, {:.4} as drawn.\nIMSE, rms, worst: irradiance / \
              pi over the hemisphere; rms and worst (of one texel) against the mean.\ndrawn, 99 %: {drawn}, against the mean there.\nf32, \
              f16, u8, bc6h: bytes of {} texels, errors with what the encoding loses.\nns: one evaluation, three channels, f32, one \
-             thread.\nThe worst texel of {largest} {place}.\n",
+             thread.\nThe worst texel of {largest} {place}.\n{ringing}",
             self.texels, self.mean, self.drawn_mean, self.sheet_texels
         )
     }
