@@ -27,7 +27,7 @@ pub(super) fn section(report: &Report) -> Result<String, Error> {
          nothing beats in both; the ring is the recommendation.",
     )?;
     Ok(format!(
-        "<h2>Bases of light maps</h2>\n<p>Irradiance over normals at {} texels under this light, baked once as asked in 5 bands over normals; \
+        "<h2>Bases of light maps</h2>\n<p>Irradiance over normals at {} texels under this light, windowed against ringing, baked once as asked in 5 bands over normals; \
          each basis is fitted to that. The error as drawn is the root of the mean square {normals}, against the mean there; over the \
          hemisphere all normals count alike. The shaded row is the recommendation: {}.{remark}</p>\n<pre><code>{}</code></pre>\n{plot}<div \
          class=\"wide\"><table>\n<thead><tr><th>basis</th><th>hemisphere</th><th>worst texel</th><th>as drawn</th><th>99 %</th>{encodings}\
