@@ -108,7 +108,7 @@ impl Comparison {
         let ringing = match self.negative {
             0.0 => String::new(),
             share => format!(
-                "{} of the irradiance drawn is below 0: ringing of a light in few bands, which u8 makes 0; see --window auto.\n",
+                "{} of the irradiance drawn is below 0, which u8 makes 0: noise, or ringing of a light in few bands (see --window auto).\n",
                 Unit::Share.write(share)
             ),
         };
