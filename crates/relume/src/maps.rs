@@ -1,6 +1,7 @@
 //! The options of light maps, and the sheets that they lie in.
 
 use crate::console::Console;
+use crate::usage::Usage;
 use anyhow::Result;
 use bake::{MapSettings, SheetSettings};
 use coeff_io::Encoding;
@@ -23,6 +24,9 @@ pub(crate) struct MapOptions {
     /// h6, modified-h1 (an ordinary light map), modified-h4 or modified-h6.
     #[arg(long, value_name = "NAME", default_value = "modified-h6", value_parser = basis)]
     basis: Basis,
+    /// Gives light maps to these meshes alone, by the names of meshes or materials; the others are drawn by their vertices.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    mapped: Vec<String>,
     /// How light maps are held in the file.
     #[arg(long, value_enum, default_value_t = EncodingName::F16)]
     encoding: EncodingName,
@@ -75,6 +79,11 @@ pub(crate) fn basis(text: &str) -> Result<Basis, String> {
 impl MapOptions {
     /// The settings for a scene, whose surfaces are unwrapped where their own coordinates do not serve.
     pub(crate) fn settings(&self, scene: &mut Scene, console: &Console) -> Result<MapSettings> {
+        if let Some(name) =
+            self.mapped.iter().find(|name| !(0..scene.meshes.len()).any(|mesh| is_named(scene, mesh, name)))
+        {
+            return Err(Usage(format!("--mapped {name}: no mesh or material of {} has that name", scene.name)).into());
+        }
         let sheets = match self.own(scene, console) {
             Some(sheets) => sheets,
             None => self.unwrapped(scene, console)?,
@@ -99,7 +108,7 @@ impl MapOptions {
 
     /// The sheets that the coordinates of the scene make: one for all meshes or one for each, whichever has no faults.
     fn own(&self, scene: &Scene, console: &Console) -> Option<Vec<SheetSettings>> {
-        let meshes = mapped(scene);
+        let meshes = self.meshes(scene);
         if self.unwrap || meshes.iter().any(|&mesh| scene.meshes[mesh].uv1.is_empty()) {
             return None;
         }
@@ -122,13 +131,15 @@ impl MapOptions {
 
     /// Sheets of the program's own: one for what has normal maps and one for the rest, as dense.
     fn unwrapped(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
-        let (bent, plain): (Vec<usize>, Vec<usize>) = mapped(scene).into_iter().partition(|&mesh| is_bent(scene, mesh));
+        let (bent, plain): (Vec<usize>, Vec<usize>) =
+            self.meshes(scene).into_iter().partition(|&mesh| is_bent(scene, mesh));
         let groups: Vec<Vec<usize>> = [bent, plain].into_iter().filter(|group| !group.is_empty()).collect();
         let all: f64 = groups.iter().flatten().map(|&mesh| area(scene, mesh)).sum();
         let density = f64::from(self.texels) * (FILLED / all.max(f64::MIN_POSITIVE)).sqrt();
+        let one = groups.len() == 1;
         let mut sheets = Vec::new();
         for group in groups {
-            let density = match sheets.is_empty() && group.len() == mapped(scene).len() {
+            let density = match one {
                 true => Density::Side(self.texels),
                 false => Density::PerMetre(density as f32),
             };
@@ -143,15 +154,20 @@ impl MapOptions {
         Ok(sheets)
     }
 
+    /// Meshes that get light maps: surfaces that stop light, or those of them that are named. Others are drawn by their vertices.
+    fn meshes(&self, scene: &Scene) -> Vec<usize> {
+        let wanted = |mesh: usize| self.mapped.is_empty() || self.mapped.iter().any(|name| is_named(scene, mesh, name));
+        (0..scene.meshes.len()).filter(|&mesh| scene.material(mesh).blocks_rays() && wanted(mesh)).collect()
+    }
+
     fn sheet(&self, scene: &Scene, meshes: Vec<usize>, [width, height]: [u32; 2]) -> SheetSettings {
         let directional = self.basis != Basis::ModifiedH1 && meshes.iter().any(|&mesh| is_bent(scene, mesh));
         SheetSettings { meshes, width, height, directional }
     }
 }
 
-/// Meshes that get light maps: surfaces that stop light. Others are drawn by their vertices.
-fn mapped(scene: &Scene) -> Vec<usize> {
-    (0..scene.meshes.len()).filter(|&mesh| scene.material(mesh).blocks_rays()).collect()
+fn is_named(scene: &Scene, mesh: usize, name: &str) -> bool {
+    scene.meshes[mesh].name == name || scene.material(mesh).name == name
 }
 
 fn is_bent(scene: &Scene, mesh: usize) -> bool {
