@@ -1,7 +1,9 @@
 //! `relume bases`: what each basis of irradiance normal mapping loses, and what it costs.
 
+use crate::bases_scene::{self, OnScene};
 use crate::console::Console;
 use crate::output;
+use crate::source::{self, SceneSource};
 use anyhow::{Context, Result};
 use coeff_io::replace;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -15,9 +17,15 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   relume bases -o bases/
   relume bases --signals 1000000 --seed 7 -o bases/
+  relume bases --scene house.glb --probe kitchen.hdr -o house-bases/
+  relume bases --scene house.glb --probe kitchen.hdr --target 0.01 --texels 512 --error 0.05 -o house-bases/
+  relume bases --scene builtin:atrium --probe builtin:sky --budget 256K --bounces 1 -o atrium-bases/ --json
 
 Prints the table and writes bases.csv, bases.svg and bases.png. Errors depend on the seed alone; the nanoseconds are
-measured on this machine: let it rest meanwhile. One thread does all the work, whatever --threads says.";
+measured on this machine: let it rest meanwhile. One thread does all the work, whatever --threads says.
+
+With --scene the scene is baked once, in 5 bands over normals, and the bases are compared on what arrives at its texels; one is
+recommended for --target or --budget. Writes bases-scene.csv, bases-scene.svg and bases-scene.png.";
 
 /// The files that are written: the table, then the two forms of the plot.
 const FILES: [&str; 3] = ["bases.csv", "bases.svg", "bases.png"];
@@ -25,18 +33,27 @@ const FILES: [&str; 3] = ["bases.csv", "bases.svg", "bases.png"];
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
     /// Random irradiance signals to average over.
-    #[arg(long, value_name = "N", default_value_t = SIGNALS, value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = SIGNALS, value_parser = clap::value_parser!(u32).range(2..=10_000_000),
+          conflicts_with = "scene")]
     signals: u32,
-    /// Seed of the signals.
+    /// Seed of everything random: of the signals, or of the bake.
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
     /// The folder to write into; made if need be.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    /// Compare on this scene instead: .gltf, .glb, .obj, or builtin:NAME.
+    #[arg(long, value_name = "SCENE", requires = "probe", value_parser = source::scene)]
+    scene: Option<SceneSource>,
+    #[command(flatten)]
+    on_scene: OnScene,
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let folder = &options.output;
+    if let Some(scene) = &options.scene {
+        return bases_scene::run(scene, &options.on_scene, options.seed, folder, console);
+    }
     output::check_all(folder, &FILES)?;
     let study = study::bases::study(Settings { signals: options.signals, seed: options.seed });
     let (svg, picture) = (study.svg()?, study.picture()?);
@@ -49,7 +66,8 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     Ok(())
 }
 
-fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
+/// Writes a file whole or not at all.
+pub(crate) fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
     replace(path, fill).with_context(|| format!("cannot write {}", path.display()))
 }
 

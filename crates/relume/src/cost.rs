@@ -2,15 +2,18 @@
 
 use crate::console::Console;
 use crate::lens::{self, Lens};
+use crate::sheets::{SMALLEST, SheetChoice, has_normal_maps};
 use crate::source::{ProbeOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{interrupt, output, settings};
 use anyhow::{Context, Result};
+use bake::SheetSettings;
 use coeff_io::{Settings, replace};
+use scene::Scene;
 use std::io::Write;
 use std::path::PathBuf;
 use study::cost::report::{Machine, Run};
-use study::cost::{Error, Goal, Report, Request, Targets, csv, page, plots};
+use study::cost::{Error, Goal, LightMaps, Report, Request, Targets, csv, page, plots};
 use study::plot::chart::{Chart, Unit};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -64,6 +67,12 @@ pub(crate) struct Options {
     /// The view of the pictures: the name of a camera, or eye x,y,z, target x,y,z and vertical angle of view in degrees.
     #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true)]
     camera: Option<Lens>,
+    /// Compare the bases of light maps even where the scene has no normal map, which asks for them.
+    #[arg(long)]
+    light_maps: bool,
+    /// Texels along a side of the sheets of light maps that bases are compared on.
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
+    texels: u32,
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
@@ -76,6 +85,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     }
     let environment = options.probe.load(console)?;
     output::check_all(&options.output, &FILES)?;
+    let (mapped, sheet_options) = (options.light_maps(&scene, console)?, options.sheet_choice().options());
     interrupt::watch()?;
     let targets = Targets { error: options.target_error, seconds: options.target_time, bytes: options.target_size };
     let request = Request {
@@ -85,6 +95,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         targets,
         budget: options.budget,
         machine: machine(),
+        light_maps: mapped.as_ref().map(|(scene, sheets)| LightMaps { scene, sheet_options: &sheet_options, sheets }),
     };
     let report = {
         let progress = console.progress();
@@ -107,6 +118,26 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
 }
 
 impl Options {
+    fn sheet_choice(&self) -> SheetChoice {
+        SheetChoice { texels: self.texels, unwrap: false, padding: 2, only: Vec::new() }
+    }
+
+    /// The scene with coordinates of light maps and their sheets, where normal maps or the user ask for them.
+    fn light_maps(&self, scene: &Scene, console: &Console) -> Result<Option<(Scene, Vec<SheetSettings>)>> {
+        if !self.light_maps && !has_normal_maps(scene) {
+            return Ok(None);
+        }
+        let mut scene = scene.clone();
+        match self.sheet_choice().sheets(&mut scene, console) {
+            Ok(sheets) => Ok(Some((scene, sheets))),
+            Err(error) if !self.light_maps => {
+                console.notice(&format!("bases of light maps are left out: {error}"));
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
     /// What every bake of the study has.
     fn settings(&self) -> Result<Settings> {
         let standard = bake::settings::standard();
@@ -132,7 +163,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 /// Parses a number of bytes of which there is one at least.
-fn some_bytes(text: &str) -> Result<u64, String> {
+pub(crate) fn some_bytes(text: &str) -> Result<u64, String> {
     match settings::bytes(text)? {
         0 => Err("no bake fits into 0 bytes: give a size such as 8M".into()),
         bytes => Ok(bytes),
@@ -192,7 +223,8 @@ fn summary(report: &Report) -> Vec<String> {
             Unit::Bytes.write(run.bytes as f64)
         )
     };
-    report.advice.iter().map(line).collect()
+    let bases = report.bases.iter().map(|bases| format!("light maps, {}: {}", bases.recommendation(), bases.options()));
+    report.advice.iter().map(line).chain(bases).collect()
 }
 
 /// The error of a run that its goal is about, as the page has it: for a size what fewer bands leave out is in it.

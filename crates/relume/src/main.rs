@@ -3,6 +3,7 @@
 mod arguments;
 mod bake;
 mod bases;
+mod bases_scene;
 mod columns;
 mod console;
 mod cost;
@@ -24,6 +25,7 @@ mod plan;
 mod reference;
 mod render;
 mod settings;
+mod sheets;
 mod source;
 mod timed;
 mod usage;

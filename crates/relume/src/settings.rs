@@ -143,7 +143,8 @@ pub(crate) fn bounces(text: &str) -> Result<Bounces, String> {
     }
 }
 
-fn refine(text: &str) -> Result<Refine, String> {
+/// Parses how large triangles are split.
+pub(crate) fn refine(text: &str) -> Result<Refine, String> {
     match text {
         "auto" => Ok(Refine::Auto),
         "off" => Ok(Refine::Off),

@@ -34,14 +34,30 @@ fn unknown(name: &str, known: &[(&str, &str)]) -> Usage {
 #[derive(Debug, clap::Args)]
 pub(crate) struct SceneOptions {
     /// A scene: .gltf, .glb, .obj, or builtin:NAME.
-    #[arg(value_name = "SCENE", value_parser = parse)]
-    scene: Source,
+    #[arg(value_name = "SCENE", value_parser = scene)]
+    scene: SceneSource,
 }
 
 impl SceneOptions {
     /// Loads the scene and tells what was mended.
     pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
-        let scene = match &self.scene {
+        self.scene.load(console)
+    }
+}
+
+/// A scene that is not loaded yet.
+#[derive(Debug, Clone)]
+pub(crate) struct SceneSource(Source);
+
+/// Parses the name of a scene.
+pub(crate) fn scene(text: &str) -> Result<SceneSource, std::convert::Infallible> {
+    parse(text).map(SceneSource)
+}
+
+impl SceneSource {
+    /// Loads the scene and tells what was mended.
+    pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
+        let scene = match &self.0 {
             Source::Path(path) => scene::load(path)?,
             Source::Builtin(name) => scene::builtin(name).ok_or_else(|| unknown(name, scene::BUILTINS))?,
         };

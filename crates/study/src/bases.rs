@@ -10,6 +10,7 @@ mod entry;
 mod invariant;
 mod label;
 mod plot;
+pub mod scene;
 mod table;
 mod timing;
 

@@ -8,6 +8,7 @@ mod csv;
 mod deviation;
 mod format;
 mod frames;
+mod light_maps;
 mod page;
 mod plots;
 mod recommend;
@@ -26,6 +27,7 @@ pub use csv::csv;
 pub use deviation::{Deviation, Spread, Truth, open_norm};
 pub use format::Format;
 pub use frames::Frames;
+pub use light_maps::LightMaps;
 pub use page::page;
 pub use plots::{Plots, plots};
 pub use recommend::{Advice, Goal, Ground, advise};
@@ -54,6 +56,8 @@ pub struct Request<'a> {
     pub budget: f64,
     /// Facts to write into the report.
     pub machine: report::Machine,
+    /// Light maps whose bases are to be compared as well; an effect of scenes with normal maps.
+    pub light_maps: Option<LightMaps<'a>>,
 }
 
 /// What the user wants.

@@ -1,6 +1,7 @@
 //! Bakes with a clock, predicted before they start: the scene is split once, so that every bake has the same receivers.
 
 use super::{Error, ProgressFn, Step};
+use bake::{Directional, FixedLight, SheetSettings};
 use coeff_io::{Effect, Prt, Refine, Settings};
 use scene::Scene;
 use std::borrow::Cow;
@@ -116,6 +117,34 @@ impl<'a> Bakes<'a> {
             progress(&Step { name, run, stage: now.stage.to_string(), done: now.done, total: now.total })
         })?;
         Ok(Timed { prt, seconds: self.split + began.elapsed().as_secs_f64() })
+    }
+
+    /// Bakes what arrives at the texels of light maps, of a scene that is not split yet; `None` where it took more than `most` seconds.
+    pub(super) fn directional(
+        &mut self,
+        name: &str,
+        scene: &Scene,
+        settings: &Settings,
+        sheets: &[SheetSettings],
+        light: &FixedLight,
+        most: f64,
+    ) -> Result<Option<Directional>, Error> {
+        self.count += 1;
+        self.tell(name, 0, 1)?;
+        let (progress, run, deadline) = (self.progress, self.count, self.spent() + most);
+        let is_late = || self.spent() > deadline;
+        let found = bake::directional(scene, settings, sheets, light, &|now| {
+            if is_late() {
+                return ControlFlow::Break(());
+            }
+            progress(&Step { name, run, stage: now.stage.to_string(), done: now.done, total: now.total })
+        });
+        match found {
+            Ok(found) => Ok(Some(found)),
+            // The user's own wish to stop is asked for anew.
+            Err(bake::Error::Cancelled) if is_late() => self.tell(name, 0, 1).map(|()| None),
+            Err(error) => Err(error.into()),
+        }
     }
 
     /// Tells of work that is no bake.

@@ -8,7 +8,8 @@ const HEAD: &str = "knob,setting,can_be_typed,bands,receivers,channels,bounces,v
     transfer_error_median,transfer_error_p95,transfer_error_worst,radiance_error,radiance_error_all_bands,on_fast_front,\
     on_small_front,longest_edge_metres,milliseconds_per_frame\n";
 
-/// The study as a CSV file: one line per run, per mesh and per renderer; fields that do not apply are empty.
+/// The study as a CSV file: one line per run, per mesh, per basis of light maps in an encoding (its error as drawn stands under radiance)
+/// and per renderer; fields that do not apply are empty.
 #[must_use]
 pub fn csv(report: &Report) -> String {
     let mut text = HEAD.to_owned();
@@ -19,6 +20,17 @@ pub fn csv(report: &Report) -> String {
     if let Some(resolution) = &report.resolution {
         for (run, edge) in resolution.runs.iter().zip(&resolution.edges) {
             line(&mut text, run, [String::new(), String::new()], edge.to_string());
+        }
+    }
+    for (bases, row) in report.bases.iter().flat_map(|bases| bases.rows.iter().map(move |row| (bases, row))) {
+        for stored in &row.stored {
+            let _ = writeln!(
+                text,
+                "basis of light maps,{},true,,,3,,,,,{},,,,{},,,,,",
+                bases.options_of(row.basis, stored.encoding),
+                stored.bytes,
+                stored.drawn.rms
+            );
         }
     }
     for frames in &report.frames {

@@ -1,5 +1,6 @@
 //! The study as one page that needs nothing else: words, plots, pictures and tables in a single file.
 
+mod bases;
 mod insight;
 mod tables;
 
@@ -28,6 +29,7 @@ pub fn page(report: &Report) -> Result<String, Error> {
         views(report)?,
         tables::runs(report),
         tables::resolution(report),
+        bases::section(report)?,
         tables::frames(report),
         tables::predictions(report),
         tables::worst(report),

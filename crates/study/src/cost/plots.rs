@@ -2,7 +2,7 @@
 
 use super::recommend::Goal;
 use super::report::{Knob, Report, Run};
-use crate::plot::chart::{Chart, Label, Series, Unit};
+use crate::plot::chart::{Chart, Corner, Label, Series, Unit};
 
 /// The plots of a study.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,7 @@ fn seconds(report: &Report) -> Chart {
         front: report.fast_front.iter().map(|&i| at(&report.runs[i])).collect(),
         labels: once_each(named).into_iter().map(label).collect(),
         chosen: chosen.map(|i| at(&report.runs[i])),
+        legend: Corner::UpperRight,
     }
 }
 
@@ -62,6 +63,7 @@ fn bytes(report: &Report) -> Chart {
             .map(label)
             .collect(),
         chosen: chosen.map(|i| at(&report.runs[i])),
+        legend: Corner::UpperRight,
     }
 }
 

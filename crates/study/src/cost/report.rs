@@ -5,6 +5,7 @@ use super::deviation::Spread;
 use super::frames::Frames;
 use super::recommend::{Advice, Goal, without_own};
 use super::resolution::Resolution;
+use crate::bases::scene::Comparison;
 use crate::plot::chart::Unit;
 use crate::plot::pixels::Pixels;
 use std::fmt;
@@ -166,6 +167,8 @@ pub struct Report {
     pub advice: Vec<Advice>,
     /// Storage at finer and coarser vertices.
     pub resolution: Option<Resolution>,
+    /// Bases of light maps, where they were asked for and fitted into the budget.
+    pub bases: Option<Comparison>,
     /// Time per picture.
     pub frames: Vec<Frames>,
     /// Predicted and measured bakes: half of the reference, then the trials.

@@ -59,6 +59,7 @@ pub(crate) fn report() -> Report {
         small_front: vec![],
         advice: vec![Advice { goal: Goal::Error(0.01), run: 1, met: true }],
         resolution: None,
+        bases: None,
         frames: vec![],
         checks: vec![],
         worst: vec![],

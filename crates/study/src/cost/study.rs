@@ -8,13 +8,16 @@ use super::report::{Knob, Report, Run, View, WorstReceiver};
 use super::resolution::{self, Resolution};
 use super::trials::{Trial, as_asked, trials};
 use super::truth::{Reference, reference};
-use super::{Error, ProgressFn, Request, Targets, frames, front, views};
+use super::{Error, ProgressFn, Request, Targets, frames, front, light_maps, views};
+use crate::bases::scene::Comparison;
 use coeff_io::{Prt, Transfer};
 
 /// Receivers in the list of the worst.
 const WORST: usize = 10;
 /// Maps on the page.
 const MAPS: usize = 3;
+/// Trials before light maps: few rays, and as asked.
+const FIRST: usize = 2;
 /// Parts of the time reserved for what follows the bakes, of which one goes to each of up to six timings of frames.
 const FRAMES_PART: f64 = 12.0;
 
@@ -27,9 +30,14 @@ pub fn study(request: &Request<'_>, progress: ProgressFn<'_>) -> Result<Report, 
     let reference = reference(request, &mut bakes)?;
     let mut sweep =
         Sweep { request, baked: Vec::new(), asked: None, shown: None, left_out: Vec::new(), checks: Vec::new() };
-    sweep.trials(&mut bakes)?;
+    let mut wanted = trials(request);
+    // What goals follow from goes before light maps, and they before the rest, which takes all the time there is.
+    let rest = wanted.split_off(FIRST.min(wanted.len()));
+    sweep.trials(wanted, &mut bakes)?;
+    let bases = light_maps::study(request, &mut bakes, &mut sweep.left_out)?;
+    sweep.trials(rest, &mut bakes)?;
     let resolution = resolution::study(request, &reference.truth, &bakes, &mut sweep.left_out)?;
-    sweep.report(reference, resolution, &bakes)
+    sweep.report(reference, resolution, bases, &bakes)
 }
 
 /// A run before it is compared, and its coefficients.
@@ -51,10 +59,10 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// The first trial, and every further one that the budget allows.
-    fn trials(&mut self, bakes: &mut Bakes<'_>) -> Result<(), Error> {
+    /// The first trial of all, and every further one that the budget allows.
+    fn trials(&mut self, wanted: Vec<Trial>, bakes: &mut Bakes<'_>) -> Result<(), Error> {
         let asked = as_asked(self.request).setting;
-        for trial in trials(self.request) {
+        for trial in wanted {
             // Where nothing is left nothing more is predicted, but for the bake as asked: goals follow from it.
             if bakes.left() <= 0.0 && self.shown.is_some() && trial.setting != asked {
                 self.left_out.push(format!("{}: no time was left", trial.setting));
@@ -98,6 +106,7 @@ impl Sweep<'_> {
         mut self,
         reference: Reference,
         resolution: Option<Resolution>,
+        bases: Option<Comparison>,
         bakes: &Bakes<'_>,
     ) -> Result<Report, Error> {
         bakes.tell("comparing", 0, 1)?;
@@ -133,6 +142,7 @@ impl Sweep<'_> {
             small_front,
             advice,
             resolution,
+            bases,
             frames,
             asked: self.asked,
             shown,

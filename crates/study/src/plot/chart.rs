@@ -47,6 +47,15 @@ pub enum Unit {
     Share,
 }
 
+/// Where the legend stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Corner {
+    /// Where what is dear and far off would be.
+    UpperRight,
+    /// Under the front, where nothing is unless the cheapest is the closest too.
+    LowerLeft,
+}
+
 /// Points of one kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
@@ -80,6 +89,8 @@ pub struct Chart {
     pub labels: Vec<Label>,
     /// The point with a ring.
     pub chosen: Option<[f64; 2]>,
+    /// Where the legend stands.
+    pub legend: Corner,
 }
 
 type Plane = Cartesian2d<LogCoord<f64>, LogCoord<f64>>;
@@ -140,7 +151,10 @@ impl Chart {
         self.draw_words(&chart, root)?;
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
+            .position(match self.legend {
+                Corner::UpperRight => SeriesLabelPosition::UpperRight,
+                Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
+            })
             .background_style(TRANSPARENT)
             .border_style(TRANSPARENT)
             .label_font(words(HPos::Left))
@@ -223,7 +237,9 @@ impl Chart {
         let all = self.series.iter().flat_map(|s| &s.points).chain(&self.front).map(|p| p[axis]);
         let sound = all.filter(|v| *v > 0.0 && v.is_finite());
         let (low, high) = sound.fold((f64::INFINITY, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
-        if low > high { [1e-3, 1.0] } else { [low / 1.6, high * 1.6] }
+        // A legend below the front has room of its own.
+        let below = if axis == 1 && self.legend == Corner::LowerLeft { 5.0 } else { 1.6 };
+        if low > high { [1e-3, 1.0] } else { [low / below, high * 1.6] }
     }
 
     /// A point within the ranges; what is 0 stands at the end.
@@ -294,6 +310,7 @@ mod tests {
             front: vec![[0.1, 0.1], [1.0, 0.02], [9.0, 0.0]],
             labels: vec![Label { at: [1.0, 0.02], text: "--rays 256".into() }],
             chosen: Some([1.0, 0.02]),
+            legend: Corner::UpperRight,
         }
     }
 
