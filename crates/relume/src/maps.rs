@@ -62,10 +62,23 @@ impl EncodingName {
     }
 }
 
+/// Settings of light maps for a plan: which sheets there will be is not known before surfaces are unwrapped, and does not matter to it.
+pub(crate) fn planned(scene: &Scene) -> MapSettings {
+    let meshes = (0..scene.meshes.len()).collect();
+    let directional = crate::sheets::has_normal_maps(scene);
+    MapSettings {
+        basis: Basis::ModifiedH6,
+        sheets: vec![bake::SheetSettings { meshes, width: 1, height: 1, directional }],
+        stitch: false,
+        dilation: 0,
+        encoding: Encoding::F16,
+    }
+}
+
 /// Parses the name of a basis.
 pub(crate) fn basis(text: &str) -> Result<Basis, String> {
     Basis::named(text).ok_or_else(|| {
-        let names = Basis::ALL.map(|basis| basis.name().to_lowercase().replace(' ', "-"));
+        let names = Basis::ALL.map(coeff_io::basis_id);
         format!("'{text}' is no basis: use one of {}", names.join(", "))
     })
 }
