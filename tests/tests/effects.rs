@@ -156,6 +156,35 @@ fn normal_maps_are_not_skipped_wrongly() {
     skipping_is_drawn(&scene, Effect::NormalMaps);
 }
 
+/// With light maps a normal map bends diffuse light, also on a matt surface; without a normal map one function is kept.
+#[test]
+fn directions_are_kept_where_a_normal_map_is() {
+    let baked = |bumpy: bool| {
+        let mut scene = scene::builtin("bumps").expect("builtin");
+        if !bumpy {
+            scene.materials.iter_mut().for_each(|m| m.normal_texture = None);
+        }
+        let meshes = vec![0, 1];
+        let maps = bake::MapSettings {
+            basis: sh_math::hemisphere::Basis::ModifiedH6,
+            sheets: vec![bake::SheetSettings { meshes, width: 32, height: 32, directional: bumpy }],
+            stitch: true,
+            dilation: 1,
+            encoding: coeff_io::Encoding::F16,
+        };
+        let extras = bake::Extras { maps: Some(maps), ..bake::Extras::default() };
+        bake::bake_with(&scene, &cheap(), &extras, &|_| std::ops::ControlFlow::Continue(())).expect("it bakes")
+    };
+    let (bent, plain) = (baked(true), baked(false));
+    let row_of = |prt: &Prt| row(&prt.plan, Effect::NormalMaps).clone();
+    assert!(row_of(&bent).simulate && row_of(&bent).decision.contains("directional"), "{:?}", row_of(&bent));
+    assert!(!row_of(&plain).simulate, "{:?}", row_of(&plain));
+    let layers = |prt: &Prt| prt.maps.as_ref().expect("maps").sheets[0].layers.count;
+    assert_eq!(layers(&bent), 6 * layers(&plain), "one function of six is enough where no normal is bent");
+    assert!(!bent.geometry.tangents.is_empty() && bent.textures.len() == 1, "the map and its tangents are kept");
+    assert!(plain.geometry.tangents.is_empty() && plain.textures.is_empty(), "and no more");
+}
+
 #[test]
 fn emission_is_not_skipped_wrongly() {
     let mut scene = known("plane");

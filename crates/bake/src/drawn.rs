@@ -123,10 +123,15 @@ pub(crate) fn transmission(table: &Table<'_>) -> PlanRow {
 pub(crate) fn motion(table: &Table<'_>) -> PlanRow {
     let moving = &table.facts.moving;
     let words = Words {
-        decision: if moving.any() { "not simulated: baked at rest".into() } else { "nothing".into() },
+        decision: match (moving.any(), table.facts.volume) {
+            (_, true) => "an irradiance volume".into(),
+            (true, false) => "not simulated: baked at rest".into(),
+            (false, false) => "nothing".into(),
+        },
         reason: match moving.count() {
             0 => "no animation or skin moves a mesh".into(),
-            n => format!("animations or skins move {n} meshes"),
+            n if table.facts.volume => format!("animations or skins move {n} meshes"),
+            n => format!("animations or skins move {n} meshes (--volume would light them on their way)"),
         },
         stake: f32::from(u8::from(moving.any())),
         at_stake: match moving.any() {
@@ -134,5 +139,5 @@ pub(crate) fn motion(table: &Table<'_>) -> PlanRow {
             true => "their shadows and bounces stay where they were: up to all light near them".into(),
         },
     };
-    table.row(Effect::Motion, false, moving, words)
+    table.row(Effect::Motion, table.facts.volume, moving, words)
 }

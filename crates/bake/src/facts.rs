@@ -59,6 +59,8 @@ pub(crate) struct Facts {
     pub(crate) bumpy: Named,
     /// Whether normal maps bend diffuse light.
     pub(crate) directional: bool,
+    /// Whether a volume is asked for.
+    pub(crate) volume: bool,
     /// Number of materials whose normal maps bend nothing.
     pub(crate) idle_bumps: usize,
     pub(crate) emissive: Named,
@@ -101,6 +103,7 @@ impl Facts {
             shiny: named(&|m| m.shines),
             bumpy: named(&|m| m.bumpy && (m.shines || directional)),
             directional,
+            volume: false,
             idle_bumps: materials.iter().filter(|m| m.bumpy && !m.shines && !directional).count(),
             emissive: named(&|m| m.emission > 0.0),
             transmissive: named(&|m| m.transmits),

@@ -17,7 +17,7 @@ use crate::gather::Worker;
 use crate::progress::Stage;
 use crate::receivers::{Receiver, morton_order};
 use crate::repair::is_inside;
-use coeff_io::{Coding, Encoded, Encoding, Layers, MapLight, MapRecord, Maps, Prt, Sheet, curves};
+use coeff_io::{Coding, Effort, Encoded, Encoding, Layers, MapLight, MapRecord, Maps, Prt, Sheet, curves};
 use frame::{Converter, TangentFrame};
 use plate::Plate;
 use rayon::prelude::*;
@@ -288,7 +288,9 @@ fn layers(plate: &Plate, frames: &[TangentFrame], converter: &Converter, shape: 
 fn encoded(plate: &Plate, values: &[f32], shape: Shape, basis: Basis, light: &MapLight, encoding: Encoding) -> Encoded {
     let count = basis.count() * shape.depth;
     let curves = curves(basis, light);
-    let coding = Coding { charts: &plate.owner, curves: &curves, ..Coding::plain(encoding) };
+    // Transfer has so many layers that a thorough search would take longer than the rays.
+    let effort = if shape.depth > 1 { Effort::Fast } else { Effort::Basic };
+    let coding = Coding { charts: &plate.owner, curves: &curves, effort, ..Coding::plain(encoding) };
     let shape = [plate.width as u32, plate.height as u32, count as u32, shape.channels as u32];
     Layers::encode(shape, values, &coding)
 }

@@ -25,6 +25,7 @@ pub(crate) struct Prepared<'a> {
 pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings, extras: &Extras) -> Result<Prepared<'a>, Error> {
     let mut receivers = Receivers::of(scene);
     let mut facts = Facts::of_materials(scene, settings, extras.is_directional());
+    facts.volume = extras.volume.is_some();
     let mut world = world(scene, &facts, settings)?;
     facts.add_receivers(scene, &world, &receivers);
     world.trace_all = is_forced(settings);

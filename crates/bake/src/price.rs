@@ -35,15 +35,16 @@ pub struct Price {
     pub tried: u64,
 }
 
-/// Decides which effects a scene calls for and tries a few hundred receivers; `now` tells the time since any fixed moment.
+/// Decides which effects a scene calls for and tries a few hundred receivers; `now` tells the time since any fixed moment. What light maps
+/// and volumes take comes on top.
 ///
 /// # Errors
 /// As [`crate::bake`].
-pub fn price(scene: &Scene, settings: &Settings, now: &dyn Fn() -> Duration) -> Result<Price, Error> {
+pub fn price(scene: &Scene, settings: &Settings, extras: &Extras, now: &dyn Fn() -> Duration) -> Result<Price, Error> {
     settings::check(settings)?;
     let began = now();
     let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
-    let prepared = prepare(scene, settings, &Extras::default())?;
+    let prepared = prepare(scene, settings, extras)?;
     let preparation = (now() - began).as_secs_f64();
     let mut price = Price { plan: prepared.plan.clone(), preparation, visibility: 0.0, interreflection: 0.0, tried: 0 };
     if simulates(&price.plan, Effect::Visibility) && !prepared.traced.is_empty() {

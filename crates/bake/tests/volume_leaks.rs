@@ -44,6 +44,8 @@ fn a_thin_wall_keeps_light_out() {
         let volume = two_rooms(x, VolumeSettings::standard().resolution, 0);
         let seen = leak(&volume, Rule::Visible, 0.01);
         assert!(seen < 0.02, "from {x}: {seen} of the open room's light");
+        let drawn = leak(&volume, Rule::File, 0.01);
+        assert!(drawn < 0.02, "from {x}, as it is drawn: {drawn} of the open room's light");
         assert!(sealed_probes(&volume).count() > 20);
         let largest = sealed_probes(&volume).fold(0.0, f32::max);
         assert!(largest < 1e-6, "from {x}: {largest} at a probe in the dark");

@@ -62,4 +62,4 @@ pub use texels::Container;
 pub use visitor::VisitorError;
 pub use volume::{Node, Volume};
 pub use volume_header::VolumeHeader;
-pub use volume_lookup::{BEHIND, BIAS, Cell, LEAST_DEVIATION, Lookup, Weights, irradiance_at};
+pub use volume_lookup::{BEHIND, Cell, LEAST_DEVIATION, Lookup, Weights, irradiance_at};

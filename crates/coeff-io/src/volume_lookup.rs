@@ -7,25 +7,22 @@
 //!
 //! Seen or not is told by Chebyshev's bound, as in variance shadow maps: with mean m and mean square s of the distances along the way, of
 //! what is seen at most `v / (v + (d - m)^2)` lies beyond d > m, where `v = s - m^2`. The bound is cubed, as light leaks where it is loose.
-//! The point is first moved along the normal by [`BIAS`] of the shortest edge of its cell, so that no surface shadows itself; for the
-//! trilinear weights it stays where it is, so that whatever changes evenly through space is given back exactly.
+//! The point is asked for where it stands: moved along its normal, one beside a thin wall would be looked for on the other side. A surface
+//! whose distance the map tells exactly is seen, since no spread counts as less than [`LEAST_DEVIATION`].
 
 use crate::volume::FUNCTIONS;
 use crate::{MapLight, Node, Volume, octahedral};
 use glam::Vec3;
 use sh_math::Bands;
 
-/// Share of the shortest edge of a cell by which a point is moved along the normal before it is asked whether probes see it.
-pub const BIAS: f32 = 0.2;
-
 /// Least standard deviation of a distance, as a share of the shortest edge of a cell: texels of the maps are no finer.
-pub const LEAST_DEVIATION: f32 = 0.02;
+pub const LEAST_DEVIATION: f32 = 0.005;
 
 /// Weight of a probe straight behind a surface; straight before it weighs 1 more.
 pub const BEHIND: f32 = 0.2;
 
 /// Below this sum of weights nothing is seen.
-const VANISHING: f32 = 1e-6;
+const VANISHING: f32 = 1e-20;
 
 /// How probes are weighed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -143,7 +140,7 @@ impl Volume {
             let ahead = (at - point).normalize_or_zero().dot(normal) * 0.5 + 0.5;
             ahead * ahead + BEHIND
         });
-        let way = normal.map_or(point, |normal| point + normal * (BIAS * edge)) - at;
+        let way = point - at;
         let distance = way.length().min(self.reach);
         if self.resolution == 0 || distance <= 0.0 {
             return side;

@@ -1,6 +1,6 @@
 //! What a volume says between its probes: closed forms, and walls that light does not pass.
 
-use coeff_io::{BEHIND, BIAS, LEAST_DEVIATION, Lookup, MapLight, Node, Volume, irradiance_at, octahedral};
+use coeff_io::{BEHIND, LEAST_DEVIATION, Lookup, MapLight, Node, Volume, irradiance_at, octahedral};
 use glam::{DVec3, Vec2, Vec3};
 
 const WHITE: [[f32; 3]; 1] = [[1.0; 3]];
@@ -120,16 +120,17 @@ fn weights_sum_to_one_and_points_that_are_none_find_a_cell() {
 }
 
 /// A wall at x = 0 between probes at -1 and 1: the left room is lit. Plain weights leak half the light to the foot of the wall; with
-/// distances the dark side is dark and the lit side is lit.
+/// distances the dark side is dark and the lit side is lit, from 3 % of the step on: between the middles of texels distances to a wall,
+/// which go as 1 / cos, are told up to 2 % too long.
 #[test]
 fn light_does_not_pass_a_wall() {
     let lit = |p: Vec3| if p.x < 0.0 { 1.0 } else { 0.0 };
     let wall = |p: Vec3, d: Vec3| if p.x * d.x < 0.0 { p.x.abs() / d.x.abs() } else { 10.0 };
-    let volume = with_distances(volume([1, 2, 2], [2.0, 1.0, 1.0], false, lit), 16, wall);
+    let volume = with_distances(volume([1, 2, 2], [2.0, 1.0, 1.0], false, lit), 32, wall);
     let mut worst = [0.0_f64; 3];
     for i in 0..40 {
         let [y, z] = [0.1 + 0.045 * i as f32, 1.9 - 0.045 * i as f32];
-        for x in [0.02, 0.1, 0.3, 0.6_f32] {
+        for x in [0.06, 0.1, 0.3, 0.6_f32] {
             let point = |x: f32| Vec3::new(x, 2.0 + y, 0.5 + z);
             let dark = red(&volume, Lookup::Visible, point(x), Vec3::X);
             let bright = red(&volume, Lookup::Visible, point(-x), Vec3::NEG_X);
@@ -139,7 +140,7 @@ fn light_does_not_pass_a_wall() {
         }
     }
     assert!(worst[0] < 0.03 && worst[1] < 0.03, "leaks of {worst:?}");
-    assert!(worst[2] > 0.48, "the plain rule leaks: {worst:?}");
+    assert!(worst[2] > 0.46, "the plain rule leaks: {worst:?}");
 }
 
 /// One probe's weight against a calculation by hand, with a spread of distances.
@@ -164,10 +165,10 @@ fn visibility_is_the_bound_of_chebyshev() {
     for (found, expected) in weights.weights.iter().zip(&hand) {
         assert!((f64::from(*found) - expected / sum).abs() < 1e-6, "{weights:?} {hand:?}");
     }
-    // Without spread the least deviation holds: with edges of 2 it is 0.04.
+    // Without spread the least deviation holds: with edges of 2 it is 0.01.
     volume.distances = [0.5, 0.25].repeat(volume.positions.len() * 16);
     let sharp = volume.weights(point, None, Lookup::Visible).weights;
-    assert!(LEAST_DEVIATION == 0.02 && sharp[0] > 0.99 && sharp[0] > weights.weights[0], "{sharp:?}");
+    assert!(LEAST_DEVIATION == 0.005 && sharp[0] > 0.99 && sharp[0] > weights.weights[0], "{sharp:?}");
 }
 
 /// In free space without distances a normal alone weighs by side: squared half-cosines and a fifth.
@@ -178,7 +179,7 @@ fn probes_behind_count_less() {
     let weights = volume.weights(centre, Some(Vec3::Y), Lookup::Visible).weights;
     let [before, behind] = [1.0, -1.0].map(|sign| (sign / 3.0_f64.sqrt() / 2.0 + 0.5).powi(2) + 0.2);
     assert!((f64::from(weights[2] / weights[0]) - before / behind).abs() < 1e-5, "{weights:?}");
-    assert_eq!((BEHIND, BIAS), (0.2, 0.2));
+    assert_eq!(BEHIND, 0.2);
     assert_eq!(volume.weights(centre, Some(Vec3::Y), Lookup::Trilinear).weights, [0.125; 8]);
 }
 

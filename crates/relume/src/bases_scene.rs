@@ -78,7 +78,7 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     output::check_all(folder, &FILES)?;
     let mut scene = scene.load(console)?;
     let environment = probe.load(&options.read, console)?;
-    let choice = SheetChoice { texels: options.texels, unwrap: options.unwrap, padding: 2 };
+    let choice = SheetChoice { texels: options.texels, unwrap: options.unwrap, padding: 2, only: Vec::new() };
     let sheets = choice.sheets(&mut scene, console)?;
     interrupt::watch()?;
     let found = bake(&scene, &settings, &sheets, &environment, options.window, console)?;

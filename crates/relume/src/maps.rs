@@ -18,6 +18,9 @@ pub(crate) struct MapOptions {
     /// h6, modified-h1 (an ordinary light map), modified-h4 or modified-h6.
     #[arg(long, value_name = "NAME", default_value = "modified-h6", value_parser = basis)]
     basis: Basis,
+    /// Gives light maps to these meshes alone, by the names of meshes or materials; the others are drawn by their vertices.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    mapped: Vec<String>,
     /// How light maps are held in the file.
     #[arg(long, value_enum, default_value_t = EncodingName::F16)]
     encoding: EncodingName,
@@ -59,10 +62,23 @@ impl EncodingName {
     }
 }
 
+/// Settings of light maps for a plan: which sheets there will be is not known before surfaces are unwrapped, and does not matter to it.
+pub(crate) fn planned(scene: &Scene) -> MapSettings {
+    let meshes = (0..scene.meshes.len()).collect();
+    let directional = crate::sheets::has_normal_maps(scene);
+    MapSettings {
+        basis: Basis::ModifiedH6,
+        sheets: vec![bake::SheetSettings { meshes, width: 1, height: 1, directional }],
+        stitch: false,
+        dilation: 0,
+        encoding: Encoding::F16,
+    }
+}
+
 /// Parses the name of a basis.
 pub(crate) fn basis(text: &str) -> Result<Basis, String> {
     Basis::named(text).ok_or_else(|| {
-        let names = Basis::ALL.map(|basis| basis.name().to_lowercase().replace(' ', "-"));
+        let names = Basis::ALL.map(coeff_io::basis_id);
         format!("'{text}' is no basis: use one of {}", names.join(", "))
     })
 }
@@ -70,7 +86,8 @@ pub(crate) fn basis(text: &str) -> Result<Basis, String> {
 impl MapOptions {
     /// The settings for a scene, whose surfaces are unwrapped where their own coordinates do not serve.
     pub(crate) fn settings(&self, scene: &mut Scene, console: &Console) -> Result<MapSettings> {
-        let choice = SheetChoice { texels: self.texels, unwrap: self.unwrap, padding: self.padding };
+        let choice =
+            SheetChoice { texels: self.texels, unwrap: self.unwrap, padding: self.padding, only: self.mapped.clone() };
         let mut sheets = choice.sheets(scene, console)?;
         // An ordinary light map answers to no normal map.
         sheets.iter_mut().for_each(|sheet| sheet.directional &= self.basis != Basis::ModifiedH1);

@@ -6,7 +6,7 @@ use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use anyhow::Result;
-use bake::Price;
+use bake::{Extras, Price};
 use coeff_io::{Effect, Plan, PlanRow, Settings};
 use scene::Scene;
 use serde_json::json;
@@ -18,7 +18,8 @@ Examples:
   relume plan house.glb --probe kitchen.hdr --bands auto --json
   relume plan builtin:atrium --effects all --meshes
 
-Times are predicted from a few hundred receivers that are baked for trial on this machine.";
+Times are predicted from a few hundred receivers that are baked for trial on this machine; the texels of light maps (--storage texture)
+come on top.";
 
 const COLUMNS: Columns = Columns(&[
     (15, Side::Left),
@@ -57,7 +58,8 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let settings = options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))?;
     let scene = options.scene.load(console)?;
     let began = Instant::now();
-    let price = bake::price(&scene, &settings, &|| began.elapsed()).map_err(crate::bake::fault)?;
+    let price = bake::price(&scene, &settings, &extras(&scene, options.bake.in_texture()), &|| began.elapsed())
+        .map_err(crate::bake::fault)?;
     let text = if options.json {
         as_json(&scene, &settings, &price, light.as_ref())
     } else {
@@ -72,6 +74,12 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         text
     };
     console.print(&text)
+}
+
+/// Light maps as far as a plan looks at them: whether normal maps ask for directions.
+fn extras(scene: &Scene, in_texture: bool) -> Extras {
+    let maps = in_texture.then(|| crate::maps::planned(scene));
+    Extras { maps, ..Extras::default() }
 }
 
 /// Seconds of one effect; those that only follow from the materials take none.
@@ -172,7 +180,8 @@ mod tests {
     #[test]
     fn the_table_fits() {
         let scene = scene::builtin("cornell-box").unwrap();
-        let price = bake::price(&scene, &bake::settings::preview(), &|| std::time::Duration::ZERO).unwrap();
+        let price =
+            bake::price(&scene, &bake::settings::preview(), &Extras::default(), &|| std::time::Duration::ZERO).unwrap();
         let text = as_text(&scene.name, &price) + &meshes(&scene, &price.plan);
         for line in text.lines() {
             assert!(line.chars().count() <= 120, "{} characters: {line}", line.chars().count());

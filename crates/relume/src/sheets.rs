@@ -1,6 +1,7 @@
 //! The sheets that light maps lie in: by the coordinates of the scene where they serve, else by those of the program.
 
 use crate::console::Console;
+use crate::usage::Usage;
 use anyhow::Result;
 use bake::SheetSettings;
 use scene::Scene;
@@ -12,7 +13,7 @@ const FILLED: f64 = 0.6;
 pub(crate) const SMALLEST: u32 = 16;
 
 /// How fine sheets are, and whose coordinates they have.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct SheetChoice {
     /// Texels along a side: about so many times as many in all, shared by area.
     pub(crate) texels: u32,
@@ -20,18 +21,24 @@ pub(crate) struct SheetChoice {
     pub(crate) unwrap: bool,
     /// Free texels around each chart that is unwrapped.
     pub(crate) padding: u32,
+    /// Names of the meshes or materials that get light maps; empty for all surfaces that stop light.
+    pub(crate) only: Vec<String>,
 }
 
 impl SheetChoice {
     /// The options of `relume bake` that make the same choice.
-    pub(crate) fn options(self) -> String {
+    pub(crate) fn options(&self) -> String {
         let unwrap = if self.unwrap { " --unwrap" } else { "" };
         format!("--texels {}{unwrap}", self.texels)
     }
 
     /// The sheets for a scene, whose surfaces are unwrapped where their own coordinates do not serve. What has normal maps is marked as
     /// directional.
-    pub(crate) fn sheets(self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
+    pub(crate) fn sheets(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
+        let missing = |name: &&String| !(0..scene.meshes.len()).any(|mesh| is_named(scene, mesh, name));
+        if let Some(name) = self.only.iter().find(missing) {
+            return Err(Usage(format!("--mapped {name}: no mesh or material of {} has that name", scene.name)).into());
+        }
         match self.own(scene, console) {
             Some(sheets) => Ok(sheets),
             None => self.unwrapped(scene, console),
@@ -40,7 +47,7 @@ impl SheetChoice {
 
     /// The sheets that the coordinates of the scene make: one for all meshes or one for each, whichever has no faults.
     fn own(&self, scene: &Scene, console: &Console) -> Option<Vec<SheetSettings>> {
-        let meshes = mapped(scene);
+        let meshes = self.meshes(scene);
         if self.unwrap || meshes.iter().any(|&mesh| scene.meshes[mesh].uv1.is_empty()) {
             return None;
         }
@@ -63,13 +70,15 @@ impl SheetChoice {
 
     /// Sheets of the program's own: one for what has normal maps and one for the rest, as dense.
     fn unwrapped(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
-        let (bent, plain): (Vec<usize>, Vec<usize>) = mapped(scene).into_iter().partition(|&mesh| is_bent(scene, mesh));
+        let (bent, plain): (Vec<usize>, Vec<usize>) =
+            self.meshes(scene).into_iter().partition(|&mesh| is_bent(scene, mesh));
         let groups: Vec<Vec<usize>> = [bent, plain].into_iter().filter(|group| !group.is_empty()).collect();
         let all: f64 = groups.iter().flatten().map(|&mesh| area(scene, mesh)).sum();
         let density = f64::from(self.texels) * (FILLED / all.max(f64::MIN_POSITIVE)).sqrt();
+        let one = groups.len() == 1;
         let mut sheets = Vec::new();
         for group in groups {
-            let density = match sheets.is_empty() && group.len() == mapped(scene).len() {
+            let density = match one {
                 true => Density::Side(self.texels),
                 false => Density::PerMetre(density as f32),
             };
@@ -83,6 +92,16 @@ impl SheetChoice {
         }
         Ok(sheets)
     }
+
+    /// Meshes that get light maps: surfaces that stop light, or those of them that are named. Others are drawn by their vertices.
+    fn meshes(&self, scene: &Scene) -> Vec<usize> {
+        let wanted = |mesh: usize| self.only.is_empty() || self.only.iter().any(|name| is_named(scene, mesh, name));
+        mapped(scene).into_iter().filter(|&mesh| wanted(mesh)).collect()
+    }
+}
+
+fn is_named(scene: &Scene, mesh: usize, name: &str) -> bool {
+    scene.meshes[mesh].name == name || scene.material(mesh).name == name
 }
 
 fn sheet(scene: &Scene, meshes: Vec<usize>, [width, height]: [u32; 2]) -> SheetSettings {
@@ -90,7 +109,7 @@ fn sheet(scene: &Scene, meshes: Vec<usize>, [width, height]: [u32; 2]) -> SheetS
     SheetSettings { meshes, width, height, directional }
 }
 
-/// Meshes that get light maps: surfaces that stop light. Others are drawn by their vertices.
+/// Surfaces that stop light.
 fn mapped(scene: &Scene) -> Vec<usize> {
     (0..scene.meshes.len()).filter(|&mesh| scene.material(mesh).blocks_rays()).collect()
 }

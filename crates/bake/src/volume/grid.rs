@@ -79,7 +79,7 @@ fn around(scene: Option<Bounds>, steps: VolumeSteps) -> Result<(Vec3, Vec3, f32)
 /// Cells along each axis, no longer than a step.
 fn fitting(size: Vec3, step: f32) -> [u32; 3] {
     // Rounding is no reason for another cell.
-    (size / step * 0.9999).ceil().max(Vec3::ONE).min(Vec3::splat(2.0 * MOST_ALONG as f32)).as_uvec3().to_array()
+    (size / step * 0.9999).ceil().max(Vec3::ONE).as_uvec3().to_array()
 }
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
 //! The octahedral map: the sphere on a square, of which every texel is about as large.
 
-use glam::Vec3;
+use coeff_io::octahedral;
+use glam::{Vec2, Vec3};
 
 /// The unit direction of a point of the square [-1, 1]^2: +z in the middle, -z at the corners, +x to the right (columns), +y along the
 /// rows.
 pub(super) fn direction(x: f32, y: f32) -> Vec3 {
-    unfolded(x, y).normalize()
+    octahedral::of_square(Vec2::new(x, y))
 }
 
 /// Solid angle of a small part of the square, over its area: `1 / |p|^3` on the octahedron `|x| + |y| + |z| = 1`.

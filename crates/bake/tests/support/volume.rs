@@ -13,6 +13,8 @@ pub(crate) enum Rule {
     Trilinear,
     /// By place, validity, side, and whether the probe can see the point (Chebyshev).
     Visible,
+    /// As the file has it, which renderers take.
+    File,
 }
 
 /// Bakes a volume in a box with so many probes along each axis.
@@ -66,12 +68,15 @@ pub(crate) fn normals() -> impl Iterator<Item = Vec3> {
 
 /// Irradiance / pi at a point for a normal.
 pub(crate) fn irradiance(volume: &Volume, point: Vec3, normal: Vec3, light: &[[f32; 3]], rule: Rule) -> [f64; 3] {
+    if let Rule::File = rule {
+        return volume.irradiance(point, normal, light).map(f64::from);
+    }
     let (corners, shares) = around(volume, point);
     let (mut sum, mut total) = ([0.0; 3], 0.0);
     for (probe, share) in corners.into_iter().zip(shares) {
         let weight = match rule {
             Rule::Trilinear => share,
-            Rule::Visible => share * visible(volume, probe as usize, point, normal),
+            Rule::Visible | Rule::File => share * visible(volume, probe as usize, point, normal),
         };
         let value = at_normal(&lit(volume, probe as usize, light), normal);
         sum = std::array::from_fn(|c| sum[c] + weight * value[c]);

@@ -98,7 +98,7 @@ impl<'a> Bakes<'a> {
     /// What a bake will take: a few hundred receivers, evenly drawn, are baked for trial.
     pub(super) fn predict(&self, settings: &Settings) -> Result<Effort, Error> {
         let began = Instant::now();
-        let price = bake::price(&self.scene, &as_split(settings), &|| began.elapsed())?;
+        let price = bake::price(&self.scene, &as_split(settings), &bake::Extras::default(), &|| began.elapsed())?;
         let rays =
             |effect: Effect| price.plan.rows.iter().filter(move |row| row.effect == effect).map(|row| row.rays as f64);
         Ok(Effort {
