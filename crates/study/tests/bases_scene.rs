@@ -144,6 +144,12 @@ fn a_constant_is_lost_where_no_function_is_constant() {
     }
     let all = compare(&study::bases::scene::Request { found: &found, ..request(of, Goal::Error(0.02)) }).unwrap();
     assert_close!(all.mean, 3.5 / 3.0, 0.0, 1e-6, "the mean of the three channels");
+    assert_eq!(all.negative, 0.0, "nothing is below 0");
+    let below =
+        found.texels.iter().map(|t| DirectionalTexel { coefficients: t.coefficients.map(|rgb| rgb.map(|v| -v)), ..*t });
+    let below = Directional { texels: below.collect(), rays: 0 };
+    let below = compare(&study::bases::scene::Request { found: &below, ..request(of, Goal::Error(0.02)) }).unwrap();
+    assert_eq!(below.negative, 1.0, "can fail: everything is");
     for row in &all.rows {
         let exact = !matches!(row.basis, Basis::Hl2 | Basis::Makhotkin4 | Basis::Makhotkin9);
         let name = row.basis.name();
@@ -261,6 +267,14 @@ fn what_is_recommended_is_written() {
     let svg = whole.chart().svg().unwrap();
     assert!(svg.contains("bc6h") && svg.contains("#D1345B") && svg.contains(whole.rows[row].basis.name()));
     assert!(whole.text().contains("modified H 6") && whole.text().contains("worst texel"), "{}", whole.text());
+    let remark = |rms: f64| {
+        let mut flat = whole.clone();
+        let plain = flat.rows.iter_mut().find(|row| row.basis == Basis::ModifiedH1).unwrap();
+        plain.stored.iter_mut().for_each(|stored| stored.drawn.rms = rms);
+        flat.remark()
+    };
+    assert!(remark(0.0).is_some_and(|text| text.contains("ordinary light map")));
+    assert_eq!(remark(1.0), None, "a light map that errs more is not spoken of");
     let strict = compare(&request(of, Goal::Bytes(10))).unwrap();
     assert!(!strict.choice.met && strict.recommendation().contains("nothing fits"), "{}", strict.recommendation());
     let empty = Directional { texels: vec![], rays: 0 };
