@@ -81,6 +81,10 @@ pub(crate) fn bake_then<T>(
     if let Some(volume) = &extras.volume {
         crate::volume::check(volume, scene, &prepared, settings, extras.light.is_some())?;
     }
+    if let Some(maps) = &extras.maps {
+        let receivers = prepared.receivers.list.len();
+        crate::maps::check(maps, scene, &prepared.plan, receivers, settings, extras.light.is_some())?;
+    }
     let Prepared { world, receivers, plan, traced } = prepared;
     let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
     // Where nothing is traced no directions are needed: the smallest set stands in.

@@ -1,6 +1,6 @@
 //! What is baked beside the transfer of the vertices, from the same light between surfaces.
 
-use crate::arrival::{Arrivals, Sent, Setting};
+use crate::arrival::{Arrivals, Sent, Setting, Shape};
 use crate::directions::DirectionBank;
 use crate::domain::{Domain, Judge};
 use crate::field::Field;
@@ -11,6 +11,7 @@ use crate::receivers::Receivers;
 use crate::{Error, MapSettings, VolumeSettings};
 use coeff_io::{Bounces, Effect, MapLight, Plan, Prt, Settings};
 use scene::Scene;
+use scene::lightmap::Texel;
 use sh_math::Bands;
 
 /// What is wanted beside the transfer of the vertices; nothing by default.
@@ -95,6 +96,31 @@ impl Done<'_> {
             functions,
         };
         Arrivals::new(bank, setting)
+    }
+
+    /// Writes what the vertices around a texel take, as irradiance / pi that is the same for every normal, by `[function][depth][channel]`.
+    pub(crate) fn add_from_vertices(&self, texel: &Texel, shape: Shape, row: &mut [f32]) {
+        let first: usize = self.scene.meshes[..texel.mesh as usize].iter().map(|mesh| mesh.positions.len()).sum();
+        let corners = self.scene.meshes[texel.mesh as usize].triangles[texel.triangle as usize];
+        let [u, v] = texel.barycentrics;
+        // The first function is 1 / sqrt(4 pi) everywhere.
+        let constant = (4.0 * std::f32::consts::PI).sqrt();
+        for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
+            for channel in 0..shape.channels {
+                let own = channel.min(self.transfer.channels - 1);
+                let transfer = self.transfer.channel(first as u32 + corner, own);
+                match self.light {
+                    Some(light) => {
+                        let lit: f32 = transfer.iter().zip(&light.coefficients).map(|(t, l)| t * l[channel]).sum();
+                        row[channel] += constant * share * lit;
+                    }
+                    None => {
+                        let out = row[channel..shape.depth * shape.channels].iter_mut().step_by(shape.channels);
+                        out.zip(transfer).for_each(|(sum, t)| *sum += constant * share * t);
+                    }
+                }
+            }
+        }
     }
 
     /// Bakes what is wanted into the file.

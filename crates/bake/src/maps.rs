@@ -3,6 +3,7 @@
 //! A texel is a receiver like a vertex: the same rays, the same rule for their number. What it sees is kept over world normals until
 //! seams are stitched, then turned into the tangent frame and converted to the basis.
 
+mod check;
 mod directional;
 mod frame;
 mod join;
@@ -14,10 +15,11 @@ use crate::domain::Domain;
 use crate::error::Error;
 use crate::extras::Done;
 use crate::gather::Worker;
+use crate::plan::simulates;
 use crate::progress::Stage;
 use crate::receivers::{Receiver, morton_order};
 use crate::repair::is_inside;
-use coeff_io::{Coding, Effort, Encoded, Encoding, Layers, MapLight, MapRecord, Maps, Prt, Sheet, curves};
+use coeff_io::{Coding, Effect, Effort, Encoded, Encoding, Layers, MapLight, MapRecord, Maps, Prt, Sheet, curves};
 use frame::{Converter, TangentFrame};
 use plate::Plate;
 use rayon::prelude::*;
@@ -25,13 +27,10 @@ use scene::lightmap::{Charts, Texel, texels};
 use sh_math::Bands;
 use sh_math::hemisphere::Basis;
 
-/// Most texels along a side of a sheet.
-const MAX_SIDE: u32 = 8192;
-/// Most rings around charts.
-const MAX_DILATION: u32 = 64;
 /// Texels that a thread takes at a time.
 const CHUNK: usize = 64;
 
+pub(crate) use check::check;
 pub use directional::{Directional, DirectionalTexel, directional};
 
 /// What maps are wanted.
@@ -70,18 +69,43 @@ struct Gathered {
     frames: Vec<TangentFrame>,
     /// The same: estimated error.
     errors: Vec<f32>,
+    /// Texels inside of bodies.
+    inside: Vec<Texel>,
     record: MapRecord,
+}
+
+impl Gathered {
+    /// Gives texels whose chart has nothing to mend them with what the vertices around them take, the same for every normal. Returns how
+    /// many there are.
+    fn fill_from_vertices(&mut self, done: &Done<'_>, shape: Shape) -> usize {
+        let mut filled = 0;
+        for texel in std::mem::take(&mut self.inside) {
+            let place = texel.row as usize * self.plate.width + texel.column as usize;
+            if self.plate.slot_of[place] != plate::NONE {
+                continue;
+            }
+            let slot = self.plate.add_slot(place, self.plate.owner[place]);
+            self.plate.model_of[slot as usize] = self.frames.len() as u32;
+            let mesh = &done.scene.meshes[texel.mesh as usize];
+            let normal = receiver(done, &texel).normal;
+            self.frames.push(TangentFrame::at(mesh, texel.triangle as usize, texel.barycentrics, normal));
+            let start = self.plate.values.len();
+            self.plate.values.resize(start + shape.len(), 0.0);
+            done.add_from_vertices(&texel, shape, &mut self.plate.values[start..]);
+            filled += 1;
+        }
+        filled
+    }
 }
 
 /// Bands over normals that are kept until the conversion: three, as the paper has them, where they can be relit, and five where there is
 /// room, since that is what a bent normal can tell of the cosine.
-fn functions(done: &Done<'_>) -> Bands {
-    Bands::new(if done.light.is_some() { 5 } else { 3 }).expect("few bands")
+fn functions(has_light: bool) -> Bands {
+    Bands::new(if has_light { 5 } else { 3 }).expect("few bands")
 }
 
 pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Result<Maps, Error> {
-    check(done, settings)?;
-    let functions = functions(done);
+    let functions = functions(done.light.is_some());
     let bank = done.bank(Domain::Hemisphere, functions);
     let arrivals = done.arrivals(&bank, functions);
     let shape = arrivals.shape();
@@ -92,7 +116,8 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         first_index += sheet.width * sheet.height;
     }
     for gathered in &mut sheets {
-        gathered.record.unfilled = gathered.plate.mend() as u64;
+        gathered.plate.mend();
+        gathered.record.unfilled = gathered.fill_from_vertices(done, shape) as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
     }
     if settings.stitch && settings.dilation > 0 {
@@ -103,10 +128,12 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         sheet.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(index));
     }
     let mut record = summed(&sheets);
+    // Left out by --effects, normal maps are not drawn.
+    let bends = simulates(done.plan, Effect::NormalMaps);
     let light = done.map_light();
     let finish = |(mut gathered, sheet): (Gathered, &SheetSettings)| {
         (1..settings.dilation).for_each(|_| gathered.plate.dilate());
-        let held = if sheet.directional { settings.basis } else { settings.basis.cut(1).unwrap_or(settings.basis) };
+        let held = if bends && sheet.directional { settings.basis } else { Basis::ModifiedH1 };
         let values = layers(&gathered.plate, &gathered.frames, &Converter::new(held, functions), shape);
         let encoded = encoded(&gathered.plate, &values, shape, held, &light, settings.encoding);
         record.clipped += encoded.clipped;
@@ -120,30 +147,6 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     Ok(Maps { basis: settings.basis, light, sheets, sheet_of_mesh })
 }
 
-fn check(done: &Done<'_>, settings: &MapSettings) -> Result<(), Error> {
-    let refuse = |setting, value: String, allowed| Err(Error::Setting { setting, value, allowed });
-    for sheet in &settings.sheets {
-        if !(1..=MAX_SIDE).contains(&sheet.width) || !(1..=MAX_SIDE).contains(&sheet.height) {
-            return refuse(
-                "--texels",
-                format!("{} x {}", sheet.width, sheet.height),
-                "use sheets of 1 to 8192 texels along each side",
-            );
-        }
-    }
-    if settings.dilation > MAX_DILATION {
-        return refuse("dilation", settings.dilation.to_string(), "use 0 to 64 rings");
-    }
-    let mut seen = vec![false; done.scene.meshes.len()];
-    for &mesh in settings.sheets.iter().flat_map(|sheet| &sheet.meshes) {
-        match seen.get_mut(mesh) {
-            Some(seen) if !*seen => *seen = true,
-            _ => return refuse("sheets", format!("mesh {mesh}"), "a mesh of the scene lies in one sheet at most"),
-        }
-    }
-    Ok(())
-}
-
 /// What arrives at the texels of a sheet that a surface touches.
 fn gather(
     done: &Done<'_>,
@@ -153,7 +156,6 @@ fn gather(
 ) -> Result<Gathered, Error> {
     let touched = texels(done.scene, &sheet.meshes, sheet.width, sheet.height);
     let shape = arrivals.shape();
-    check_memory(done, touched.len(), shape)?;
     let points: Vec<Receiver> = touched.iter().map(|texel| receiver(done, texel)).collect();
     let found = arrive(done, arrivals, &points, &|k| first_index + touched[k].row * sheet.width + touched[k].column)?;
     let charts: Vec<Charts> = done.scene.meshes.iter().map(Charts::of).collect();
@@ -162,7 +164,7 @@ fn gather(
         first_chart[m + 1] = first_chart[m] + chart.count;
     }
     let mut plate = Plate::empty([sheet.width as usize, sheet.height as usize], shape.len());
-    let (mut frames, mut errors, mut record) = (Vec::new(), Vec::new(), MapRecord::default());
+    let (mut frames, mut errors, mut inside, mut record) = (Vec::new(), Vec::new(), Vec::new(), MapRecord::default());
     for ((texel, point), arrival) in touched.iter().zip(&points).zip(found) {
         let place = texel.row as usize * plate.width + texel.column as usize;
         let chart = first_chart[texel.mesh as usize] + charts[texel.mesh as usize].of_triangle[texel.triangle as usize];
@@ -171,6 +173,7 @@ fn gather(
         if is_inside(arrival.openness, arrival.inside_share) || !point.sound {
             plate.owner[place] = chart;
             record.inside += 1;
+            inside.push(*texel);
             continue;
         }
         plate.add_slot(place, chart);
@@ -181,7 +184,7 @@ fn gather(
     }
     plate.values.par_chunks_mut(shape.len().max(1)).for_each(|row| to_irradiance(row, shape));
     record.texels = touched.len() as u64;
-    Ok(Gathered { plate, frames, errors, record })
+    Ok(Gathered { plate, frames, errors, inside, record })
 }
 
 /// What all sheets took and reached.
@@ -198,12 +201,6 @@ fn summed(sheets: &[Gathered]) -> MapRecord {
     let at = |share: f64| errors.get((errors.len().saturating_sub(1) as f64 * share) as usize).copied().unwrap_or(0.0);
     all.error = [at(0.5), at(0.95), at(1.0)];
     all
-}
-
-fn check_memory(done: &Done<'_>, texels: usize, shape: Shape) -> Result<(), Error> {
-    // Once as found, once in the plate, and as much again while they are converted.
-    let (needed, allowed) = (3 * 4 * (texels * shape.len()) as u64, done.settings.memory);
-    if needed > allowed { Err(Error::MapMemory { texels, needed, allowed }) } else { Ok(()) }
 }
 
 /// The point of a surface that a texel stands for.

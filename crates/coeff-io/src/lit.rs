@@ -56,19 +56,19 @@ impl Maps {
         })
     }
 
-    /// Whether a sheet of so many layers holds all functions, or as many as the basis can be cut to.
+    /// Whether a sheet of so many layers holds all functions, as many as the basis can be cut to, or the one of an ordinary light map.
     #[must_use]
     pub fn holds(&self, layers: u32) -> bool {
         let depth = self.light.depth();
         let held = layers as usize / depth;
-        layers as usize == held * depth && (held == self.basis.count() || self.basis.cut(held).is_some())
+        layers as usize == held * depth && (held == 1 || self.basis.cut(held).is_some())
     }
 
-    /// The functions that a sheet holds: those of the basis, or of its cut.
+    /// The functions that a sheet holds: those of the basis, of its cut, or the one of an ordinary light map, where no normal map is.
     #[must_use]
     pub fn held(&self, sheet: &Sheet) -> Basis {
         let functions = sheet.layers.count as usize / self.light.depth();
-        self.basis.cut(functions).unwrap_or(self.basis)
+        if functions == 1 { Basis::ModifiedH1 } else { self.basis.cut(functions).unwrap_or(self.basis) }
     }
 
     /// The basis that a sheet which holds `held` is drawn in where `asked` is asked for: an ordinary light map, one function, stays what

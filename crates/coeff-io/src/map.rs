@@ -53,8 +53,8 @@ impl MapLight {
 /// The coefficients of one sheet. Layer `function * depth + i` is coefficient `i` of the light in a function ([`MapLight::depth`]); texel
 /// row 0 is at v = 0.
 ///
-/// A sheet holds all functions of the basis, or the first few where the others are 0 and the basis can be cut there: the modified H-basis
-/// holds one where no normal map is.
+/// A sheet holds all functions of the basis, the first few where the basis can be cut there, or, where no normal map is, one in any basis: that of
+/// an ordinary light map ([`Basis::ModifiedH1`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
     /// The layers.

@@ -120,7 +120,7 @@ pub struct MapRecord {
     pub texels: u64,
     /// Of these, those inside of bodies: they were filled from their own chart.
     pub inside: u64,
-    /// Of those, the ones whose chart has nothing to fill them with: they are black.
+    /// Of those, the ones whose chart has nothing to fill them with: they took what the vertices around them take.
     pub unfilled: u64,
     /// Estimated error of the irradiance in 3 bands over normals, against that of an open point: median, 95th percentile, worst.
     pub error: [f32; 3],

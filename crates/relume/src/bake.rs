@@ -137,7 +137,7 @@ pub(crate) fn light_maps(maps: &coeff_io::MapRecord, quality: Quality) -> String
     let mut text = format!("light maps: {} texels, {}", maps.texels, error(quality, maps.error));
     for (count, what) in [
         (maps.inside, "inside of bodies, filled from their chart"),
-        (maps.unfilled, "with nothing to fill them, black"),
+        (maps.unfilled, "with a chart of nothing else, taken from the vertices"),
         (maps.clipped, "numbers clipped by the encoding"),
         (maps.negative, "negative numbers set to 0"),
     ] {

@@ -18,12 +18,13 @@ pub(crate) struct ExtraOptions {
     maps: MapOptions,
     #[command(flatten)]
     volume: VolumeOptions,
-    /// Whether light maps and volumes answer to any light, or hold that of --probe: fixed takes a small part of the bytes.
+    /// Whether light maps and volumes answer to any light, or hold that of --probe: fixed takes a small part of the bytes. A fixed volume is
+    /// for export: moving objects (render --visitor) want one that can be relit.
     #[arg(long, value_enum, default_value_t = LightMode::Relightable)]
     light: LightMode,
-    /// What is done against ringing of a fixed light.
-    #[arg(long, value_enum, default_value_t = Window::None)]
-    window: Window,
+    /// What is done against ringing of a fixed light; nothing where not given.
+    #[arg(long, value_enum)]
+    window: Option<Window>,
 }
 
 /// Whether light is baked in.
@@ -46,6 +47,12 @@ impl ExtraOptions {
         console: &Console,
     ) -> Result<Extras> {
         let volume = self.volume.settings()?;
+        if let (false, Some(option)) = (in_texture, self.maps.typed()) {
+            return Err(Usage(format!("{option} is for light maps: add --storage texture")).into());
+        }
+        if self.window.is_some() && self.light != LightMode::Fixed {
+            return Err(Usage("--window is for a light that is baked in: add --light fixed".into()).into());
+        }
         let light = match (self.light, probe) {
             (LightMode::Relightable, _) => None,
             (LightMode::Fixed, None) => {
@@ -58,6 +65,9 @@ impl ExtraOptions {
                 Usage("--light fixed is for light maps and volumes: add --storage texture or --volume".into()).into()
             );
         }
+        if let (Some(light), true) = (&light, volume.is_some()) {
+            console.notice(&format!("the volume will hold the light of {} alone: it lights no --visitor", light.name));
+        }
         let maps = in_texture.then(|| self.maps.settings(scene, console)).transpose()?;
         Ok(Extras { maps, volume, light })
     }
@@ -65,7 +75,7 @@ impl ExtraOptions {
     fn fixed(&self, probe: &ProbeSource, read: &ReadOptions, bands: u32, console: &Console) -> Result<FixedLight> {
         let environment = probe.load(read, console)?;
         let bands = Bands::new(bands).ok_or_else(|| Usage(format!("--bands {bands}: use 1 to 32")))?;
-        let light = self.window.apply(&sh_math::project(bands, environment.samples()));
+        let light = self.window.unwrap_or(Window::None).apply(&sh_math::project(bands, environment.samples()));
         Ok(FixedLight { name: environment.name, coefficients: light.values })
     }
 }

@@ -34,10 +34,21 @@ impl LookOptions {
     }
 }
 
+/// The end of a path, by which a probe is known again from another folder.
+fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
 /// Tells where the maps of a file hold the light of another probe than the one that is shown.
-pub(crate) fn tell(prt: &Prt, shown: &str, console: &Console) {
+pub(crate) fn tell(prt: &Prt, shown: &str, look: &LookOptions, console: &Console) {
+    if let Some(maps) = &prt.maps
+        && (look.basis.is_some() || look.functions.is_some())
+        && maps.sheets.iter().all(|sheet| maps.held(sheet).count() == 1)
+    {
+        console.notice("no normal map lies upon the light maps, which hold one function: they are drawn as they are");
+    }
     if let Some(MapLight::Fixed { probe, .. }) = prt.maps.as_ref().map(|maps| &maps.light)
-        && probe != shown
+        && file_name(probe) != file_name(shown)
     {
         console.notice(&format!(
             "the light maps hold the light of {probe}; {shown} is in the sky, in reflections and where there are no maps"

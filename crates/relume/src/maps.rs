@@ -8,31 +8,37 @@ use coeff_io::Encoding;
 use scene::Scene;
 use sh_math::hemisphere::Basis;
 
+/// Texels along a side, and free ones around a chart, where none are asked for.
+const TEXELS: u32 = 1024;
+const PADDING: u32 = 2;
+
 /// How light maps are baked, as typed.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct MapOptions {
     /// Texels along a side of the sheets with --storage texture: about so many times as many in all, shared by area.
-    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
-    texels: u32,
+    /// 1024 where not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
+    texels: Option<u32>,
     /// The functions over normals that light maps are kept in: sh4, sh9, hl2, hsh4, hsh9, makhotkin4, makhotkin9, zernike3, zernike6, h4,
-    /// h6, modified-h1 (an ordinary light map), modified-h4 or modified-h6.
-    #[arg(long, value_name = "NAME", default_value = "modified-h6", value_parser = basis)]
-    basis: Basis,
+    /// h6, modified-h1 (an ordinary light map), modified-h4 or modified-h6, which is the default. Surfaces without normal maps keep an
+    /// ordinary light map in any case.
+    #[arg(long, value_name = "NAME", value_parser = basis)]
+    basis: Option<Basis>,
     /// Gives light maps to these meshes alone, by the names of meshes or materials; the others are drawn by their vertices.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     mapped: Vec<String>,
-    /// How light maps are held in the file.
-    #[arg(long, value_enum, default_value_t = EncodingName::F16)]
-    encoding: EncodingName,
+    /// How light maps are held in the file; f16 where not given.
+    #[arg(long, value_enum)]
+    encoding: Option<EncodingName>,
     /// Unwraps all surfaces, whatever light-map coordinates the scene brings.
     #[arg(long)]
     unwrap: bool,
     /// Leaves the light of the two sides of a seam as it is.
     #[arg(long)]
     no_stitch: bool,
-    /// Free texels around each chart that is unwrapped, and rings that are filled around each chart.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=32))]
-    padding: u32,
+    /// Free texels around each chart that is unwrapped, and rings that are filled around each chart; 2 where not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=32))]
+    padding: Option<u32>,
 }
 
 /// The encodings by the names that are typed.
@@ -84,15 +90,34 @@ pub(crate) fn basis(text: &str) -> Result<Basis, String> {
 }
 
 impl MapOptions {
+    /// The first option that was typed.
+    pub(crate) fn typed(&self) -> Option<&'static str> {
+        let options = [
+            ("--texels", self.texels.is_some()),
+            ("--basis", self.basis.is_some()),
+            ("--mapped", !self.mapped.is_empty()),
+            ("--encoding", self.encoding.is_some()),
+            ("--unwrap", self.unwrap),
+            ("--no-stitch", self.no_stitch),
+            ("--padding", self.padding.is_some()),
+        ];
+        options.into_iter().find(|(_, is_typed)| *is_typed).map(|(name, _)| name)
+    }
+
     /// The settings for a scene, whose surfaces are unwrapped where their own coordinates do not serve.
     pub(crate) fn settings(&self, scene: &mut Scene, console: &Console) -> Result<MapSettings> {
-        let choice =
-            SheetChoice { texels: self.texels, unwrap: self.unwrap, padding: self.padding, only: self.mapped.clone() };
+        let choice = SheetChoice {
+            texels: self.texels.unwrap_or(TEXELS),
+            unwrap: self.unwrap,
+            padding: self.padding.unwrap_or(PADDING),
+            only: self.mapped.clone(),
+        };
+        let basis = self.basis.unwrap_or(Basis::ModifiedH6);
         let mut sheets = choice.sheets(scene, console)?;
         // An ordinary light map answers to no normal map.
-        sheets.iter_mut().for_each(|sheet| sheet.directional &= self.basis != Basis::ModifiedH1);
+        sheets.iter_mut().for_each(|sheet| sheet.directional &= basis != Basis::ModifiedH1);
         for sheet in &sheets {
-            let kind = if sheet.directional { self.basis.name() } else { "plain light" };
+            let kind = if sheet.directional { basis.name() } else { "an ordinary light map" };
             console.detail(&format!(
                 "sheet of {} x {} texels, {} meshes, {kind}",
                 sheet.width,
@@ -101,11 +126,11 @@ impl MapOptions {
             ));
         }
         Ok(MapSettings {
-            basis: self.basis,
+            basis,
             sheets,
             stitch: !self.no_stitch,
-            dilation: self.padding.max(1),
-            encoding: self.encoding.encoding(),
+            dilation: self.padding.unwrap_or(PADDING).max(1),
+            encoding: self.encoding.unwrap_or(EncodingName::F16).encoding(),
         })
     }
 }

@@ -11,6 +11,7 @@ use crate::visitor::VisitorOptions;
 use anyhow::Result;
 use glam::{EulerRot, Quat};
 use render_cpu::Frame;
+use std::borrow::Cow;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -86,9 +87,12 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     output::check(&options.output.path)?;
     let scene = source::prt(&options.file)?;
     let visitor = options.visitor.load()?;
+    if let Some(visitor) = &visitor {
+        visitor.tell(&scene, console);
+    }
     let prt = match &visitor {
-        Some(visitor) => visitor.at(&scene, 0.0)?,
-        None => scene.clone(),
+        Some(visitor) => Cow::Owned(visitor.at(&scene, 0.0)?),
+        None => Cow::Borrowed(&scene),
     };
     let frame = Frame {
         camera: lens::of_prt(options.camera.as_ref(), &prt.cameras)?,
@@ -109,20 +113,20 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     for frame in [frame.clone(), turned(&frame, 1, count)] {
         frame.check_for(&prt).map_err(|error| crate::usage::Usage(error.to_string()))?;
     }
-    look::tell(&prt, &options.probe.name(), console);
+    look::tell(&prt, &options.probe.name(), &options.look, console);
     let environment = options.probe.load(console)?;
+    if let (Some(count), Some(visitor)) = (options.frames, visitor.as_ref().filter(|visitor| visitor.moves())) {
+        drop(prt);
+        let draw = |share: f32| -> Result<_> {
+            let prt = visitor.at(&scene, share)?;
+            Drawer::open(options.backend, &prt, &environment, options.window, console)?.draw(&frame, console)
+        };
+        return draw_way(options, count.get(), &draw, console);
+    }
     let mut drawer = Drawer::open(options.backend, &prt, &environment, options.window, console)?;
-    match (options.frames, &visitor) {
-        (Some(count), Some(visitor)) if visitor.moves() => {
-            drop(drawer);
-            let draw = |share: f32| -> Result<_> {
-                let prt = visitor.at(&scene, share)?;
-                Drawer::open(options.backend, &prt, &environment, options.window, console)?.draw(&frame, console)
-            };
-            draw_way(options, count.get(), &draw, console)
-        }
-        (Some(count), _) => draw_turn(options, &frame, count.get(), &mut drawer, console),
-        (None, _) => draw_one(options, &frame, &mut drawer, console),
+    match options.frames {
+        Some(count) => draw_turn(options, &frame, count.get(), &mut drawer, console),
+        None => draw_one(options, &frame, &mut drawer, console),
     }
 }
 
@@ -164,7 +168,7 @@ fn draw_way(
 ) -> Result<()> {
     let progress = console.progress();
     for number in 0..count {
-        let image = draw(number as f32 / (count - 1).max(1) as f32)?;
+        let image = draw((number + u32::from(count == 1)) as f32 / (count - 1).max(1) as f32)?;
         options.output.numbered(number).write(options.size, &image.linear, &image.display)?;
         progress.set("frames", u64::from(number) + 1, u64::from(count));
     }

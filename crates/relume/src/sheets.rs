@@ -9,6 +9,8 @@ use scene::lightmap::{self, Density, FaultKind, Unwrap};
 
 /// Share of a sheet that unwrapped surfaces are taken to fill, to foresee its size.
 const FILLED: f64 = 0.6;
+/// A sheet of which less is filled holds much of nothing.
+const POORLY: f32 = 0.35;
 /// Fewest texels along a side of a sheet.
 pub(crate) const SMALLEST: u32 = 16;
 
@@ -87,7 +89,11 @@ impl SheetChoice {
             let atlas =
                 lightmap::unwrap(scene, &group, &options, &|stage, done, total| progress.set(stage, done, total))?;
             drop(progress);
-            console.detail(&format!("{} charts, {:.0} % of their sheet filled", atlas.charts, 100.0 * atlas.filled));
+            let text = format!("{} charts fill {:.0} % of their sheet", atlas.charts, 100.0 * atlas.filled);
+            match atlas.filled < POORLY {
+                true => console.notice(&format!("{text}: more --texels or less --padding would hold more light in it")),
+                false => console.detail(&text),
+            }
             sheets.push(sheet(scene, group, [atlas.width, atlas.height]));
         }
         Ok(sheets)

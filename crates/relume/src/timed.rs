@@ -63,7 +63,8 @@ pub(crate) fn bake(
                 let mut prt = result.map_err(fault)?;
                 prt.settings.refine = settings.refine;
                 write(&prt)?;
-                let reached = prt.achieved.error[1];
+                let of_maps = prt.achieved.maps.map_or(0.0, |maps| maps.error[1]);
+                let reached = prt.achieved.error[1].max(of_maps);
                 // The fewest rays that tell an error often reach a smaller one than was asked for: that is what is to be beaten.
                 rungs.push(Rung { error: error.min(reached), seconds: start.elapsed().as_secs_f64() });
                 let seconds = began.elapsed().as_secs_f64();
@@ -85,7 +86,7 @@ pub(crate) fn bake(
 
 /// Whether most receivers took all directions that there are: a smaller error would change nothing.
 fn spent(prt: &Prt, asked: f32) -> bool {
-    prt.achieved.error[0] > asked
+    prt.achieved.error[0].max(prt.achieved.maps.map_or(0.0, |maps| maps.error[0])) > asked
 }
 
 /// The error to ask for next with so many seconds left; none where that would be hardly smaller.

@@ -1,5 +1,6 @@
 //! An object that stands or moves in a baked scene, lit by its irradiance volume.
 
+use crate::console::Console;
 use crate::source;
 use anyhow::{Context, Result};
 use coeff_io::Prt;
@@ -49,6 +50,18 @@ impl Visitor {
     /// Whether it has a way to go.
     pub(crate) fn moves(&self) -> bool {
         self.to.is_some()
+    }
+
+    /// Tells where the object leaves the volume, whose border lights it there.
+    pub(crate) fn tell(&self, scene: &Prt, console: &Console) {
+        let Some(volume) = &scene.volume else { return };
+        let low = Vec3::from(volume.origin);
+        let high = low + Vec3::from(volume.spacing) * Vec3::from(volume.cells.map(|n| n as f32));
+        let outside = |p: Vec3| p.clamp(low, high) != p;
+        if outside(self.place.at) || self.to.is_some_and(outside) {
+            console
+                .notice("the object stands outside of the irradiance volume: the light of its border is taken there");
+        }
     }
 
     /// The scene with the object at a share of its way.

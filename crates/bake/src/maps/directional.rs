@@ -1,7 +1,7 @@
 //! What arrives at texels before any basis: what bases are judged by.
 
 use super::frame::HARMONICS;
-use super::{Gathered, MapSettings, SheetSettings, check, functions, gather};
+use super::{Gathered, MapSettings, SheetSettings, functions, gather};
 use crate::bake::bake_then;
 use crate::domain::Domain;
 use crate::extras::{Done, Extras, FixedLight};
@@ -47,15 +47,12 @@ pub fn directional(
         MapSettings { basis: Basis::Sh9, sheets: sheets.to_vec(), stitch: false, dilation: 0, encoding: Encoding::F32 };
     let extras = Extras { maps: Some(maps), light: Some(light.clone()), volume: None };
     let maps = extras.maps.as_ref().expect("just put there");
-    let (_, found) = bake_then(scene, settings, &extras, progress, |done, _| {
-        check(done, maps)?;
-        all_directional(done, maps)
-    })?;
+    let (_, found) = bake_then(scene, settings, &extras, progress, |done, _| all_directional(done, maps))?;
     Ok(found)
 }
 
 fn all_directional(done: &Done<'_>, maps: &MapSettings) -> Result<Directional, Error> {
-    let functions = functions(done);
+    let functions = functions(done.light.is_some());
     let bank = done.bank(Domain::Hemisphere, functions);
     let arrivals = done.arrivals(&bank, functions);
     let (mut out, mut first_index) = (Directional { texels: Vec::new(), rays: 0 }, 0);
