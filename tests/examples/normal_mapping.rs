@@ -15,6 +15,7 @@ mod support;
 use coeff_io::{Bounces, Camera, Prt, Quality};
 use mapped::{Shot, Truth, baked, drawn, windowed};
 use probe_io::{Environment, LoadOptions};
+use sh_math::Rgb;
 use sh_math::hemisphere::Basis;
 use std::path::Path;
 
@@ -37,10 +38,12 @@ fn main() -> Result<(), Failure> {
         None => Environment::load(Path::new(probe_name), &LoadOptions::lenient())?.0,
     };
     let light = windowed(&environment, bands.parse()?);
-    let prt = match arguments.get(5) {
+    let mut prt = match arguments.get(5) {
         Some(file) => Prt::read(Path::new(file))?,
         None => baked(&scene, &light, BAKED.0, BAKED.1, Bounces::Auto),
     };
+    // The path tracer knows no reflections.
+    prt.materials.iter_mut().for_each(|material| material.specular = false);
     let (width, height) = size.split_once('x').ok_or("the size is WxH")?;
     let shot = Shot {
         camera: arguments.get(6).map_or_else(|| Ok(prt.cameras[0].clone()), |view| camera(view))?,
@@ -49,16 +52,16 @@ fn main() -> Result<(), Failure> {
         max_bounces: (prt.settings.bounces != Bounces::Auto).then_some(prt.achieved.bounces),
     };
     let truth = Truth::trace(&scene, &light, &shot);
-    table(&prt, &shot, &truth);
+    table(&prt, &light, &shot, &truth);
     Ok(())
 }
 
-fn table(prt: &Prt, shot: &Shot, truth: &Truth) {
+fn table(prt: &Prt, light: &Rgb, shot: &Shot, truth: &Truth) {
     println!("| basis | bytes of a texel, f16 | RMS error | mean error | 99 % of the pixels below |");
     println!("|---|---|---|---|---|");
     let mut said = String::new();
     for basis in Basis::ALL {
-        let f = truth.judge(&drawn(prt, shot, basis, None));
+        let f = truth.judge(&drawn(prt, light, shot, basis));
         let bytes = 6 * basis.count();
         let percent = [f.rms, f.bias, f.p99].map(|share| 100.0 * share);
         println!("| {} | {bytes} | {:.2} % | {:+.2} % | {:.1} % |", basis.name(), percent[0], percent[1], percent[2]);

@@ -55,7 +55,7 @@ fn bumps() -> &'static Bumps {
 
 /// The errors of the bases of [`ORDER`].
 fn errors(bumps: &Bumps, prt: &Prt) -> [Figures; 5] {
-    ORDER.map(|(basis, _)| bumps.truth.judge(&drawn(prt, &bumps.shot, basis, None)))
+    ORDER.map(|(basis, _)| bumps.truth.judge(&drawn(prt, &bumps.light, &bumps.shot, basis)))
 }
 
 fn in_order(errors: &[Figures]) -> bool {
@@ -78,8 +78,8 @@ fn the_larger_the_span_the_smaller_the_error() {
 #[test]
 fn two_bases_of_one_span_show_one_picture() {
     let bumps = bumps();
-    let [ours, theirs, other] =
-        [Basis::ModifiedH4, Basis::H4, Basis::Hsh4].map(|basis| drawn(&bumps.prt, &bumps.shot, basis, None));
+    let [ours, theirs, other] = [Basis::ModifiedH4, Basis::H4, Basis::Hsh4]
+        .map(|basis| drawn(&bumps.prt, &bumps.light, &bumps.shot, basis).pixels);
     let worst = |a: &[[f32; 3]], b: &[[f32; 3]]| {
         a.iter().zip(b).map(|(a, b)| (Vec3::from(*a) - Vec3::from(*b)).abs().max_element()).fold(0.0, f32::max)
     };

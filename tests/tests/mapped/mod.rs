@@ -12,8 +12,6 @@ use sh_math::hemisphere::Basis;
 use sh_math::{Bands, Rgb};
 use std::ops::ControlFlow;
 
-/// Radiance of the sky that is drawn to find the pixels where nothing else is; far above that of any surface.
-const BEACON: f32 = 1e6;
 /// Samples along each side of a pixel.
 const SUPERSAMPLE: u32 = 4;
 
@@ -73,28 +71,42 @@ impl Truth {
     }
 
     /// Compares a drawing, over the pixels that show the scene alone.
-    pub(crate) fn judge(&self, drawn: &[[f32; 3]]) -> Figures {
+    pub(crate) fn judge(&self, drawing: &Drawing) -> Figures {
         let mut sums = Sums::default();
-        for ((drawn, a), b) in drawn.iter().zip(&self.halves[0]).zip(&self.halves[1]) {
-            if drawn[0] < 1e-3 * BEACON {
-                sums.add(*drawn, *a, *b);
+        for (pixel, (a, b)) in self.halves[0].iter().zip(&self.halves[1]).enumerate() {
+            if drawing.covered[pixel] {
+                sums.add(drawing.pixels[pixel], *a, *b);
             }
         }
         sums.figures()
     }
 }
 
-/// Draws the light maps in the first `functions` functions of a basis; where nothing is, a beacon shines.
-pub(crate) fn drawn(prt: &Prt, shot: &Shot, basis: Basis, functions: Option<u32>) -> Vec<[f32; 3]> {
-    let beacon = Environment::constant([BEACON; 3]);
-    let renderer = Renderer::new(prt, &beacon).expect("a sound file");
-    let frame = Frame {
-        supersample: SUPERSAMPLE,
-        basis: Some(basis),
-        functions,
-        ..Frame::plain(shot.camera.clone(), shot.size[0], shot.size[1])
+/// What light maps show.
+pub(crate) struct Drawing {
+    /// Linear radiance; nothing behind the scene.
+    pub(crate) pixels: Vec<[f32; 3]>,
+    /// Whether a sky behind the scene would change nothing there.
+    covered: Vec<bool>,
+}
+
+/// Draws the light maps of a diffuse scene in a basis, and what has none under the same light.
+pub(crate) fn drawn(prt: &Prt, light: &Rgb, shot: &Shot, basis: Basis) -> Drawing {
+    let white = Environment::constant([1.0; 3]);
+    let mut renderer = Renderer::new(prt, &white).expect("a sound file");
+    renderer.set_light(light.clone());
+    let draw = |sky| {
+        let frame = Frame {
+            supersample: SUPERSAMPLE,
+            basis: Some(basis),
+            sky,
+            ..Frame::plain(shot.camera.clone(), shot.size[0], shot.size[1])
+        };
+        renderer.draw(&frame).expect("a sound frame").linear
     };
-    renderer.draw(&frame).expect("a sound frame").linear
+    let (pixels, before_sky) = (draw(false), draw(true));
+    let covered = pixels.iter().zip(before_sky).map(|(without, with)| *without == with).collect();
+    Drawing { pixels, covered }
 }
 
 /// How far a drawing is from the reference, as shares of the root mean square (rms, noise) or the mean (bias, p99) of its radiance.
