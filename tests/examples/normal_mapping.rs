@@ -53,18 +53,61 @@ fn main() -> Result<(), Failure> {
     };
     let truth = Truth::trace(&scene, &light, &shot);
     table(&prt, &light, &shot, &truth);
+    ranges(&prt, &light);
+    if arguments.len() == 5 {
+        flat(scene, prt, &light, &shot);
+    }
     Ok(())
 }
 
+/// How far the coefficients of modified H 6 go beyond the constant: the paper's rule of thumb is 0.75 of it at most.
+fn ranges(prt: &Prt, light: &Rgb) {
+    let Some(maps) = &prt.maps else { return };
+    let mut ratios = Vec::new();
+    for sheet in &maps.sheets {
+        let (_, lit) = maps.lit_in(sheet, light, Basis::ModifiedH6);
+        let Some((first, others)) = lit.functions.split_first().filter(|(_, others)| !others.is_empty()) else {
+            continue;
+        };
+        for (texel, constant) in first.iter().enumerate() {
+            for (c, &constant) in constant.iter().enumerate().filter(|(_, constant)| **constant > 0.0) {
+                ratios.push(others.iter().map(|other| other[texel][c].abs()).fold(0.0, f32::max) / constant);
+            }
+        }
+    }
+    ratios.sort_by(f32::total_cmp);
+    let Some(&most) = ratios.last() else { return };
+    let beyond = ratios.iter().filter(|ratio| **ratio > 0.75).count();
+    println!(
+        "modified H 6, largest coefficient over the constant: beyond 0.75 in {:.1} %, 99 % below {:.2}, most {most:.2}",
+        100.0 * beyond as f64 / ratios.len() as f64,
+        ratios[ratios.len() * 99 / 100]
+    );
+}
+
+/// The same without normal maps: how far one function of three bands is from the light map that it stands for.
+fn flat(mut scene: scene::Scene, mut prt: Prt, light: &Rgb, shot: &Shot) {
+    scene.materials.iter_mut().for_each(|material| material.normal_texture = None);
+    prt.materials.iter_mut().for_each(|material| material.normal_texture = None);
+    let truth = Truth::trace(&scene, light, shot);
+    for basis in [Basis::ModifiedH1, Basis::Sh9] {
+        let f = truth.judge(&drawn(&prt, light, shot, basis));
+        let [rms, bias] = [f.rms, f.bias].map(|share| 100.0 * share);
+        println!("{} without normal maps: RMS error {rms:.2} %, mean error {bias:+.2} %", basis.name());
+    }
+}
+
 fn table(prt: &Prt, light: &Rgb, shot: &Shot, truth: &Truth) {
-    println!("| basis | bytes of a texel, f16 | RMS error | mean error | 99 % of the pixels below |");
-    println!("|---|---|---|---|---|");
+    println!("| basis | bytes of a texel, f16 | RMS error | mean error | 99 % of the pixels below | RMS from SH 9 |");
+    println!("|---|---|---|---|---|---|");
+    let nine = drawn(prt, light, shot, Basis::Sh9);
     let mut said = String::new();
     for basis in Basis::ALL {
-        let f = truth.judge(&drawn(prt, light, shot, basis));
+        let drawing = drawn(prt, light, shot, basis);
+        let f = truth.judge(&drawing);
         let bytes = 6 * basis.count();
-        let percent = [f.rms, f.bias, f.p99].map(|share| 100.0 * share);
-        println!("| {} | {bytes} | {:.2} % | {:+.2} % | {:.1} % |", basis.name(), percent[0], percent[1], percent[2]);
+        let [rms, bias, p99, apart] = [f.rms, f.bias, f.p99, drawing.apart(&nine)].map(|share| 100.0 * share);
+        println!("| {} | {bytes} | {rms:.2} % | {bias:+.2} % | {p99:.0} % | {apart:.2} % |", basis.name());
         said = format!("{} pixels; noise of the reference {:.2} %, taken off the RMS", f.pixels, 100.0 * f.noise);
     }
     println!("\n{said}");

@@ -49,7 +49,7 @@ pub(crate) struct Truth {
 }
 
 impl Truth {
-    /// Follows paths through the scene, normal maps bending normals.
+    /// Follows paths through the scene, normal maps bending normals where it has any.
     pub(crate) fn trace(scene: &Scene, light: &Rgb, shot: &Shot) -> Self {
         let world = reference::World::with_normal_maps(scene, true);
         let light = BandLight::new(light).picture.with_sky(&Environment::constant([0.0; 3]));
@@ -88,6 +88,19 @@ pub(crate) struct Drawing {
     pub(crate) pixels: Vec<[f32; 3]>,
     /// Whether a sky behind the scene would change nothing there.
     covered: Vec<bool>,
+}
+
+impl Drawing {
+    /// Root of the mean squared difference from another drawing of the same scene, as a share of the root mean square of that.
+    pub(crate) fn apart(&self, other: &Self) -> f64 {
+        let (mut squares, mut power) = (0.0, 0.0);
+        for (pixel, _) in self.covered.iter().enumerate().filter(|(_, covered)| **covered) {
+            let [a, b] = [self, other].map(|drawing| Vec3::from(drawing.pixels[pixel]).as_dvec3());
+            squares += (a - b).length_squared();
+            power += b.length_squared();
+        }
+        (squares / power).sqrt()
+    }
 }
 
 /// Draws the light maps of a diffuse scene in a basis, and what has none under the same light.
