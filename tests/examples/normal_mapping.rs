@@ -54,9 +54,7 @@ fn main() -> Result<(), Failure> {
     let truth = Truth::trace(&scene, &light, &shot);
     table(&prt, &light, &shot, &truth);
     ranges(&prt, &light);
-    if arguments.len() == 5 {
-        flat(scene, prt, &light, &shot);
-    }
+    flat(scene, prt, &light, &shot);
     Ok(())
 }
 
@@ -88,15 +86,18 @@ fn ranges(prt: &Prt, light: &Rgb) {
     );
 }
 
-/// The same without normal maps: how far one function of three bands is from the light map that it stands for.
+/// The same without normal maps: how far one function of three bands is from the light map that it stands for, and what errs in any basis.
 fn flat(mut scene: scene::Scene, mut prt: Prt, light: &Rgb, shot: &Shot) {
     scene.materials.iter_mut().for_each(|material| material.normal_texture = None);
     prt.materials.iter_mut().for_each(|material| material.normal_texture = None);
     let truth = Truth::trace(&scene, light, shot);
-    for basis in [Basis::ModifiedH1, Basis::Sh9] {
+    for basis in [Some(Basis::ModifiedH1), Some(Basis::Sh9), None] {
+        if basis.is_none() {
+            prt.maps = None;
+        }
         let f = truth.judge(&drawn(&prt, light, shot, basis));
-        let [rms, bias] = [f.rms, f.bias].map(|share| 100.0 * share);
-        println!("{} without normal maps: RMS error {rms:.2} %, mean error {bias:+.2} %", basis.name());
+        let ([rms, bias], name) = ([f.rms, f.bias].map(|share| 100.0 * share), basis.map_or("vertices", Basis::name));
+        println!("{name} without normal maps: RMS error {rms:.2} %, mean error {bias:+.2} %");
     }
 }
 

@@ -103,15 +103,16 @@ impl Drawing {
     }
 }
 
-/// Draws the light maps of a diffuse scene in a basis, and what has none under the same light.
-pub(crate) fn drawn(prt: &Prt, light: &Rgb, shot: &Shot, basis: Basis) -> Drawing {
+/// Draws the light maps of a diffuse scene in a basis, and what has none, which may be all, under the same light.
+pub(crate) fn drawn(prt: &Prt, light: &Rgb, shot: &Shot, basis: impl Into<Option<Basis>>) -> Drawing {
+    let basis = basis.into();
     let white = Environment::constant([1.0; 3]);
     let mut renderer = Renderer::new(prt, &white).expect("a sound file");
     renderer.set_light(light.clone());
     let draw = |sky| {
         let frame = Frame {
             supersample: SUPERSAMPLE,
-            basis: Some(basis),
+            basis,
             sky,
             ..Frame::plain(shot.camera.clone(), shot.size[0], shot.size[1])
         };
