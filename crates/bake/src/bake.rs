@@ -85,6 +85,7 @@ pub(crate) fn bake_then<T>(
         let receivers = prepared.receivers.list.len();
         crate::maps::check(maps, scene, &prepared.plan, receivers, settings, extras.light.is_some())?;
     }
+    extras.check_light(prepared.plan.bands)?;
     let Prepared { world, receivers, plan, traced } = prepared;
     let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
     // Where nothing is traced no directions are needed: the smallest set stands in.
@@ -196,16 +197,22 @@ impl<'a> Run<'a> {
             self.settings,
             Baked { transfer: &transfer, openness, plan, achieved, extras },
         );
-        let more = then(&self.done(scene, &transfer, extras), &mut prt)?;
+        // What is sent on reaches texels and probes one bounce later: as many bounces as were asked for, or all.
+        let sent = match (self.settings.bounces, extras.is_empty()) {
+            (Bounces::Fixed(1..), false) if self.gatherer.hits => Cow::Owned(transfer.without(&self.last)),
+            _ => Cow::Borrowed(&transfer),
+        };
+        let more = then(&self.done(scene, &transfer, &sent, extras), &mut prt)?;
         Ok((prt, more))
     }
 
-    fn done<'b>(&'b self, scene: &'b Scene, transfer: &'b Field, extras: &'b Extras) -> Done<'b> {
+    fn done<'b>(&'b self, scene: &'b Scene, transfer: &'b Field, sent: &'b Field, extras: &'b Extras) -> Done<'b> {
         Done {
             scene,
             gatherer: &self.gatherer,
             receivers: &self.receivers,
             transfer,
+            sent,
             settings: self.settings,
             plan: &self.plan,
             light: extras.light.as_ref(),

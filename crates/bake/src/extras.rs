@@ -26,6 +26,22 @@ pub struct Extras {
 }
 
 impl Extras {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.maps.is_none() && self.volume.is_none()
+    }
+
+    /// Refuses a light that lacks coefficients or holds what is no number.
+    pub(crate) fn check_light(&self, bands: u32) -> Result<(), Error> {
+        let Some(light) = &self.light else { return Ok(()) };
+        let enough = light.coefficients.len() >= (bands * bands) as usize;
+        if enough && light.coefficients.as_flattened().iter().all(|v| v.is_finite()) {
+            return Ok(());
+        }
+        let value = format!("{} of {} coefficients", light.name, light.coefficients.len());
+        let allowed = "give as many coefficients as the bake has, all finite";
+        Err(Error::Setting { setting: "--light fixed", value, allowed })
+    }
+
     /// Whether diffuse light will be drawn by the normals of normal maps.
     pub(crate) fn is_directional(&self) -> bool {
         self.maps.as_ref().is_some_and(|maps| maps.sheets.iter().any(|sheet| sheet.directional))
@@ -48,6 +64,8 @@ pub(crate) struct Done<'a> {
     pub(crate) receivers: &'a Receivers,
     /// All bounces together, of every receiver.
     pub(crate) transfer: &'a Field,
+    /// Of these the bounces that surfaces send on to texels and probes.
+    pub(crate) sent: &'a Field,
     pub(crate) settings: &'a Settings,
     pub(crate) plan: &'a Plan,
     pub(crate) light: Option<&'a FixedLight>,
@@ -85,8 +103,8 @@ impl Done<'_> {
             world: self.gatherer.world,
             receivers: self.receivers,
             sent: match light {
-                Some(light) => Sent::under(self.transfer, self.receivers.list.len(), light),
-                None => Sent::Transfer(self.transfer),
+                Some(light) => Sent::under(self.sent, self.receivers.list.len(), light),
+                None => Sent::Transfer(self.sent),
             },
             quality: self.settings.quality,
             visibility: self.gatherer.visibility || in_space && allowed(self.settings, Effect::Visibility),
@@ -130,7 +148,7 @@ impl Done<'_> {
             prt.maps = Some(maps);
         }
         if let Some(settings) = &extras.volume {
-            prt.volume = Some(crate::volume::bake(self, settings)?);
+            prt.volume = Some(crate::volume::bake(self, settings, prt)?);
         }
         Ok(())
     }

@@ -61,6 +61,12 @@ impl Field {
         }
     }
 
+    /// This field without another of the same shape.
+    pub(crate) fn without(&self, other: &Self) -> Self {
+        let values = self.values.iter().zip(&other.values).map(|(a, b)| a - b).collect();
+        Self { values, ..*self }
+    }
+
     /// Largest norm over the channels of a receiver.
     pub(crate) fn norm(&self, receiver: u32) -> f64 {
         let square = |c: &[f32]| c.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();

@@ -15,7 +15,7 @@ use crate::domain::Domain;
 use crate::error::Error;
 use crate::extras::Done;
 use crate::gather::Worker;
-use crate::plan::simulates;
+use crate::plan::allowed;
 use crate::progress::Stage;
 use crate::receivers::{Receiver, morton_order};
 use crate::repair::is_inside;
@@ -26,6 +26,7 @@ use rayon::prelude::*;
 use scene::lightmap::{Charts, Texel, texels};
 use sh_math::Bands;
 use sh_math::hemisphere::Basis;
+use std::collections::BTreeMap;
 
 /// Texels that a thread takes at a time.
 const CHUNK: usize = 64;
@@ -116,6 +117,7 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         first_index += sheet.width * sheet.height;
     }
     for gathered in &mut sheets {
+        done.monitor.check()?;
         gathered.plate.mend();
         gathered.record.unfilled = gathered.fill_from_vertices(done, shape) as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
@@ -129,8 +131,9 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     }
     let mut record = summed(&sheets);
     // Left out by --effects, normal maps are not drawn.
-    let bends = simulates(done.plan, Effect::NormalMaps);
+    let bends = allowed(done.settings, Effect::NormalMaps);
     let light = done.map_light();
+    done.monitor.check()?;
     let finish = |(mut gathered, sheet): (Gathered, &SheetSettings)| {
         (1..settings.dilation).for_each(|_| gathered.plate.dilate());
         let held = if bends && sheet.directional { settings.basis } else { Basis::ModifiedH1 };
@@ -158,16 +161,19 @@ fn gather(
     let shape = arrivals.shape();
     let points: Vec<Receiver> = touched.iter().map(|texel| receiver(done, texel)).collect();
     let found = arrive(done, arrivals, &points, &|k| first_index + touched[k].row * sheet.width + touched[k].column)?;
-    let charts: Vec<Charts> = done.scene.meshes.iter().map(Charts::of).collect();
-    let mut first_chart = vec![0; charts.len() + 1];
-    for (m, chart) in charts.iter().enumerate() {
-        first_chart[m + 1] = first_chart[m] + chart.count;
+    let charts: BTreeMap<usize, Charts> =
+        sheet.meshes.iter().map(|&mesh| (mesh, Charts::of(&done.scene.meshes[mesh]))).collect();
+    let mut first_chart = BTreeMap::new();
+    let mut count = 0;
+    for (m, chart) in &charts {
+        first_chart.insert(*m as u32, count);
+        count += chart.count;
     }
     let mut plate = Plate::empty([sheet.width as usize, sheet.height as usize], shape.len());
     let (mut frames, mut errors, mut inside, mut record) = (Vec::new(), Vec::new(), Vec::new(), MapRecord::default());
     for ((texel, point), arrival) in touched.iter().zip(&points).zip(found) {
         let place = texel.row as usize * plate.width + texel.column as usize;
-        let chart = first_chart[texel.mesh as usize] + charts[texel.mesh as usize].of_triangle[texel.triangle as usize];
+        let chart = first_chart[&texel.mesh] + charts[&(texel.mesh as usize)].of_triangle[texel.triangle as usize];
         record.rays[0] += arrival.visibility_rays;
         record.rays[1] += arrival.bounce_rays;
         if is_inside(arrival.openness, arrival.inside_share) || !point.sound {

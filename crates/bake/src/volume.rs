@@ -19,13 +19,14 @@ use crate::gather::Worker;
 use crate::plan::allowed;
 use crate::progress::Stage;
 use crate::receivers::Receiver;
-use coeff_io::{Effect, Volume};
+use coeff_io::{Effect, Prt, Volume};
 use glam::Vec3;
 use layout::{Layout, Room};
 use rayon::prelude::*;
 use raytrace::FanState;
 use sh_math::Bands;
 use sight::{Sight, Stand};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 pub(crate) use layout::check;
 
@@ -37,7 +38,7 @@ const REACH: f32 = 1.5;
 const BORROWED: f32 = 0.01;
 
 /// Bakes a volume; a probe's light is a pure function of the scene, the settings and the probe's number.
-pub(crate) fn bake(done: &Done<'_>, settings: &VolumeSettings) -> Result<Volume, Error> {
+pub(crate) fn bake(done: &Done<'_>, settings: &VolumeSettings, prt: &mut Prt) -> Result<Volume, Error> {
     let world = done.gatherer.world;
     let room = Room::of(done.plan, done.settings, done.receivers.list.len(), done.light.is_some());
     let layout = Layout::of(done.scene, world, settings, room)?;
@@ -52,7 +53,9 @@ pub(crate) fn bake(done: &Done<'_>, settings: &VolumeSettings) -> Result<Volume,
         layout: &layout,
         done,
     };
-    probes.fill(&mut volume)?;
+    let [visibility, bounce] = probes.fill(&mut volume)?;
+    prt.achieved.visibility_rays += visibility;
+    prt.achieved.bounce_rays += bounce;
     dilation::spread(&mut volume);
     Ok(volume)
 }
@@ -96,7 +99,8 @@ struct Slot<'a> {
 }
 
 impl Probes<'_> {
-    fn fill(&self, volume: &mut Volume) -> Result<(), Error> {
+    /// Fills in all probes; returns the any-hit and the closest-hit rays.
+    fn fill(&self, volume: &mut Volume) -> Result<[u64; 2], Error> {
         let total = volume.positions.len() as u64;
         let monitor = self.done.monitor;
         monitor.begin(Stage::Probes, total);
@@ -105,20 +109,25 @@ impl Probes<'_> {
         let arrays = values.par_chunks_mut(self.arrivals.shape().len()).zip(distances.par_chunks_mut(2 * texels));
         let places = volume.positions.par_iter_mut().zip(&mut volume.validity);
         let slots = arrays.zip(places).enumerate();
+        let all = [AtomicU64::new(0), AtomicU64::new(0)];
         slots.for_each_init(
             || (Worker::new(), FanState::new()),
             |(worker, fan), (number, ((values, distances), (position, validity)))| {
                 if !monitor.is_cancelled() {
                     let rays = self.probe(number, Slot { values, distances, position, validity }, worker, fan);
-                    monitor.receiver_done(Stage::Probes, total, rays);
+                    all.iter().zip(rays).for_each(|(all, rays)| {
+                        all.fetch_add(rays, Ordering::Relaxed);
+                    });
+                    monitor.receiver_done(Stage::Probes, total, rays[0] + rays[1]);
                 }
             },
         );
-        monitor.check()
+        monitor.check()?;
+        Ok(all.map(AtomicU64::into_inner))
     }
 
-    /// Fills in one probe; returns the rays that it took.
-    fn probe(&self, number: usize, slot: Slot<'_>, worker: &mut Worker, fan: &mut FanState) -> u64 {
+    /// Fills in one probe; returns the any-hit and the closest-hit rays that it took.
+    fn probe(&self, number: usize, slot: Slot<'_>, worker: &mut Worker, fan: &mut FanState) -> [u64; 2] {
         let mut rays = 0;
         if let Some(sight) = self.sight {
             let edges = self.layout.grid.edges(self.layout.tree.probes[number].level);
@@ -127,13 +136,13 @@ impl Probes<'_> {
             *slot.validity = view.validity();
             slot.distances.copy_from_slice(&view.distances);
             if *slot.validity == 0.0 {
-                return rays;
+                return [0, rays];
             }
         }
         let arrival = self.arrivals.at(&in_space(Vec3::from_array(*slot.position)), number as u32, worker);
         slot.values.copy_from_slice(&arrival.values);
         to_irradiance(slot.values, self.arrivals.shape());
-        rays + arrival.visibility_rays + arrival.bounce_rays
+        [arrival.visibility_rays, rays + arrival.bounce_rays]
     }
 }
 

@@ -144,6 +144,26 @@ fn texels_agree_with_vertices() {
     assert!(middle < 0.02, "median difference {middle}");
 }
 
+/// As many bounces as were asked for: in a bowl of albedo 0.9 each is told from the next, texel by texel near vertices.
+#[test]
+fn bounces_are_counted() {
+    let (scene, sheet) = unwrapped(grey("bowl", 0.9), 48);
+    let radiance = |bounces: u32| {
+        let asked = Settings { quality: coeff_io::Quality::Error(0.01), ..fixed(3, Sampler::OwenSobol, 1, bounces) };
+        let prt = baked(&scene, &asked, settings(Basis::ModifiedH1, &sheet), None);
+        let of_texels = at(&prt, &scene, &sheet, &white(3), Vec3::Z);
+        let mean = of_texels.iter().map(|value| f64::from(value[0])).sum::<f64>() / of_texels.len() as f64;
+        // Without the albedo of the surface itself, as maps are.
+        let vertices = support::under_white(&prt);
+        (mean, vertices.iter().sum::<f64>() / vertices.len() as f64 / 0.9)
+    };
+    for bounces in [0, 1, 2] {
+        let ((texels, vertices), (_, more)) = (radiance(bounces), radiance(bounces + 1));
+        assert!((texels - vertices).abs() < 0.012, "{bounces}: texels {texels}, vertices {vertices}");
+        assert!((texels - more).abs() > 0.03, "{bounces}: another bounce, {more}, must show");
+    }
+}
+
 /// Step of the signal across the seam of a cylinder against steps inside, with few rays: stitched it is none; left alone it shows.
 #[test]
 fn seams_do_not_show() {

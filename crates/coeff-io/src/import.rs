@@ -67,6 +67,12 @@ fn layers(folder: &Path, text: SheetText) -> Result<Layers, Error> {
 pub fn grid(folder: &Path) -> Result<Grid, Error> {
     let text: GridText = json(&folder.join("volume.json"))?;
     check_convention(&text.convention)?;
+    let sound = text.origin.iter().all(|v| v.is_finite())
+        && text.step.iter().all(|v| v.is_finite() && *v > 0.0)
+        && text.points.iter().all(|n| *n > 0);
+    if !sound {
+        return Err(Error::invalid(0, "volume.json has a grid without points, or with a step that is none"));
+    }
     let mut functions: [Vec<[f32; 3]>; 9] = Default::default();
     for (file, function) in text.files.iter().zip(&mut functions) {
         let texels = texture(folder, file)?;

@@ -74,6 +74,9 @@ pub struct Lit {
 
 impl Sheet {
     /// The coefficients under a light of `depth` or more coefficients in world axes (unused where the light is fixed).
+    ///
+    /// # Panics
+    /// When the light has fewer coefficients.
     #[must_use]
     pub fn lit(&self, maps: &Maps, light: &[[f32; 3]]) -> Lit {
         let (layers, depth) = (&self.layers, maps.light.depth());

@@ -39,7 +39,9 @@ pub(crate) fn check(
         largest = largest.max(finished.max((own * row) as u64));
     }
     let fields = 2 * Field::bytes(receivers, light.coefficients(), plan.channels as usize);
-    let needed = fields + 4 * ((touched * row) as u64 + largest);
+    // While seams are stitched the plates are there twice.
+    let plates = (touched * row) as u64 * if maps.stitch { 2 } else { 1 };
+    let needed = fields + 4 * (plates + largest);
     if needed > settings.memory {
         return Err(Error::MapMemory { texels: touched, needed, allowed: settings.memory });
     }

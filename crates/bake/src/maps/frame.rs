@@ -108,7 +108,6 @@ impl Converter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::Material;
 
     fn mesh(tangent: Vec4) -> Mesh {
         Mesh {
@@ -147,7 +146,6 @@ mod tests {
 
     #[test]
     fn normals_of_the_map_need_no_frame() {
-        let _ = Material::default();
         assert!(worst(1.0, 1.0) < 1e-5 && worst(-1.0, 1.0) < 1e-5, "{} {}", worst(1.0, 1.0), worst(-1.0, 1.0));
         assert!(worst(-1.0, -1.0) > 0.1, "a mirrored frame that is taken for another must show");
     }

@@ -9,6 +9,8 @@ use scene::lightmap::seams;
 
 /// Look-ups to a texel along a seam.
 const PER_TEXEL: f32 = 2.0;
+/// Look-ups to a texel that holds something, over all seams: sound coordinates stay far below.
+const MOST_PER_SLOT: usize = 32;
 
 /// Makes both sides of every seam between the meshes of all sheets agree.
 pub(super) fn stitch_all(done: &Done<'_>, settings: &MapSettings, sheets: &mut [Gathered]) {
@@ -36,6 +38,10 @@ pub(super) fn stitch_all(done: &Done<'_>, settings: &MapSettings, sheets: &mut [
         };
         let points =
             (PER_TEXEL * length(&seam.sides[0]).max(length(&seam.sides[1]))).ceil().clamp(1.0, 65_536.0) as u32;
+        // Coordinates that make no sheet could ask for any number.
+        if agreements.len() > MOST_PER_SLOT * first_slot[first_slot.len() - 1] as usize {
+            break;
+        }
         for point in 0..points {
             let along = (point as f32 + 0.5) / points as f32;
             let [left, right] = seam.sides.map(|side| look_up(side.mesh, side.ends[0].lerp(side.ends[1], along)));

@@ -56,13 +56,12 @@ impl Plate {
 
     /// Fills texels that a chart touches but that have no slot, from their own chart: those that could not see. Returns how many stay empty.
     pub(crate) fn mend(&mut self) -> usize {
-        loop {
-            let missing: Vec<usize> =
-                (0..self.slot_of.len()).filter(|&t| self.owner[t] != NONE && self.slot_of[t] == NONE).collect();
-            if missing.is_empty() || !self.grow(missing.iter().copied()) {
-                return missing.len();
-            }
+        let all = 0..self.slot_of.len();
+        let mut missing: Vec<usize> = all.filter(|&t| self.owner[t] != NONE && self.slot_of[t] == NONE).collect();
+        while !missing.is_empty() && self.grow(missing.iter().copied()) {
+            missing.retain(|&t| self.slot_of[t] == NONE);
         }
+        missing.len()
     }
 
     /// Fills one more ring of empty texels around every chart, each from one chart alone.
