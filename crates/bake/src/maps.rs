@@ -49,6 +49,25 @@ pub struct MapSettings {
     pub encoding: Encoding,
 }
 
+impl MapSettings {
+    /// Bytes that the maps take in the file at most, but for small headers: in three channels, of which transfer may have one.
+    /// `light_bands` is none where the light is fixed.
+    #[must_use]
+    pub fn most_bytes(&self, light_bands: Option<u32>) -> u64 {
+        let depth = light_bands.map_or(1, |bands| u64::from(bands) * u64::from(bands));
+        let half_bytes = match self.encoding {
+            Encoding::F32 => 24,
+            Encoding::F16 => 12,
+            Encoding::U8 => 6,
+            Encoding::Bc6h => 2,
+            Encoding::Bc1 => 1,
+        };
+        let layers = |sheet: &SheetSettings| if sheet.directional { self.basis.count() as u64 } else { 1 } * depth;
+        let texels = |sheet: &SheetSettings| u64::from(sheet.width) * u64::from(sheet.height);
+        self.sheets.iter().map(|sheet| texels(sheet) * layers(sheet) * half_bytes / 2).sum()
+    }
+}
+
 /// What sheet is wanted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetSettings {

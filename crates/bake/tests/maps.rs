@@ -281,6 +281,21 @@ fn threads_do_not_matter() {
     assert_ne!(on(1).maps, other.maps, "another seed must show");
 }
 
+/// What is foretold of the size is what the file takes, in three channels.
+#[test]
+fn sizes_are_foretold() {
+    let (scene, sheet) = unwrapped(grey("cornell-box", 0.6), 48);
+    let light = fixed_light(uneven(3));
+    for encoding in [coeff_io::Encoding::F32, coeff_io::Encoding::F16, coeff_io::Encoding::Bc6h] {
+        let asked = MapSettings { encoding, ..settings(Basis::H6, &sheet) };
+        let foretold = asked.most_bytes(None);
+        let prt = baked(&scene, &fixed(3, Sampler::OwenSobol, 16, 0), asked.clone(), Some(light.clone()));
+        let taken = maps(&prt).sheets[0].layers.bytes.len() as u64;
+        assert!(taken >= foretold && taken < foretold + foretold / 8, "{encoding:?}: {taken}, foretold {foretold}");
+        assert_eq!(asked.most_bytes(Some(3)), 9 * foretold, "transfer has 9 numbers for each");
+    }
+}
+
 #[test]
 fn wrong_sheets_are_refused() {
     let (scene, sheet) = unwrapped(grey("plane", 0.5), 16);

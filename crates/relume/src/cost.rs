@@ -110,6 +110,9 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     if let Some(warning) = report.warning() {
         console.notice(&format!("warning: {warning}"));
     }
+    if request.light_maps.is_some() && report.bases.is_none() {
+        console.notice("bases of light maps are left out, since the time did not suffice: allow more with --budget");
+    }
     for line in summary(&report) {
         console.print(&line)?;
     }

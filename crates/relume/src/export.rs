@@ -16,7 +16,8 @@ Examples:
   relume export atrium.prt --format json -o text/
 
 npy writes positions.npy [R,3], normals.npy [R,3] and transfer.npy [R, n*n, C]. Where C is 3, transfer times light is
-outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times that.
+outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times that. Where there are light maps,
+uv1.npy [R,2] says where vertices lie in them, and triangles.npy [T,3] which vertices belong together.
 
 ktx2 and dds write light maps as 2-D arrays (sheet_0 ..., one layer per function and coefficient of the light, blocks and
 floating numbers as they are held, eight bits as halves) with maps.json, and a volume as nine 3-D textures of RGBA halves

@@ -11,6 +11,9 @@ use bake::{Extras, FixedLight};
 use scene::Scene;
 use sh_math::Bands;
 
+/// Bytes of light maps that are worth a word before they are baked.
+const MANY: u64 = 256 << 20;
+
 /// Light maps, a volume, and whether light is in them.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExtraOptions {
@@ -69,6 +72,11 @@ impl ExtraOptions {
             console.notice(&format!("the volume will hold the light of {} alone: it lights no --visitor", light.name));
         }
         let maps = in_texture.then(|| self.maps.settings(scene, console)).transpose()?;
+        if let Some(maps) = &maps {
+            let most = maps.most_bytes(light.is_none().then_some(bands));
+            let text = format!("light maps will take up to {} of the file", crate::columns::bytes(most));
+            if most >= MANY { console.notice(&text) } else { console.detail(&text) }
+        }
         Ok(Extras { maps, volume, light })
     }
 

@@ -84,6 +84,16 @@ fn textures_and_text_come_back() {
         assert_eq!(grid.functions[3][5], [prt.volume.as_ref().unwrap().values[5 * 9 + 3]; 3]);
     }
     run(folder, &["export", "full.prt", "--format", "json", "-o", "text"], 0);
+    run(folder, &["export", "full.prt", "--format", "npy", "-o", "arrays"], 0);
+    let size = |name: &str| std::fs::metadata(folder.join("arrays").join(name)).map_or(0, |file| file.len());
+    let (vertices, triangles) = (prt.geometry.positions.len() as u64, prt.geometry.triangles.len() as u64);
+    assert_eq!(
+        (size("uv1.npy") - 8 * vertices, size("triangles.npy") - 12 * triangles),
+        (128, 128),
+        "header and numbers"
+    );
+    run(folder, &["export", "plain.prt", "--format", "npy", "-o", "bare"], 0);
+    assert!(!folder.join("bare/uv1.npy").exists(), "without maps there is nowhere that they lie");
     assert_eq!(Some(import::volume_json(&folder.join("text/volume.json")).unwrap()), prt.volume);
 }
 

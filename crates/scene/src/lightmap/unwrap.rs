@@ -65,7 +65,9 @@ pub enum UnwrapError {
         side: u32,
     },
     /// A picture of the material hangs on the coordinates that would be replaced.
-    #[error("mesh '{mesh}': its pictures use the second texture coordinates, which cannot be replaced then; use those")]
+    #[error(
+        "mesh '{mesh}': its pictures use the second texture coordinates, which cannot be replaced then; mend those, or leave the mesh without a light map"
+    )]
     InUse {
         /// Name of the mesh.
         mesh: String,
