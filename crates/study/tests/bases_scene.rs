@@ -174,7 +174,7 @@ fn errors_as_drawn_are_those_at_the_normals() {
                 y
             })
         };
-        let [bent, plain] = [basis, basis.cut(1).unwrap_or(basis)].map(|held| (held, rows(held)));
+        let [bent, plain] = [basis, Basis::ModifiedH1].map(|held| (held, rows(held)));
         for texel in &of.found.texels {
             let ((held, rows), seen) = if texel.sheet == 0 { (&bent, picked) } else { (&plain, &[Vec3::Z][..]) };
             let own: Vec<[f32; 3]> = match held {
@@ -231,7 +231,7 @@ fn bytes_are_those_of_sheets() {
         let row = whole.rows.iter().find(|row| row.basis == basis).unwrap();
         row.stored.iter().find(|stored| stored.encoding == encoding).unwrap().bytes as usize
     };
-    for (basis, plain) in [(Basis::ModifiedH6, 1), (Basis::ModifiedH1, 1), (Basis::H6, 6), (Basis::Hl2, 3)] {
+    for (basis, plain) in [(Basis::ModifiedH6, 1), (Basis::ModifiedH1, 1), (Basis::H6, 1), (Basis::Hl2, 1)] {
         for encoding in [Encoding::F16, Encoding::Bc6h] {
             let expected = of_sheet(0, basis.count(), encoding) + of_sheet(1, plain, encoding);
             let rest = bytes(basis, encoding) - expected;
@@ -244,7 +244,8 @@ fn bytes_are_those_of_sheets() {
             );
         }
     }
-    assert_ne!(bytes(Basis::ModifiedH6, Encoding::F16), bytes(Basis::H6, Encoding::F16), "can fail: the cut shows");
+    let all = of_sheet(0, 6, Encoding::F16) + of_sheet(1, 6, Encoding::F16);
+    assert_ne!(bytes(Basis::H6, Encoding::F16), all, "can fail: six functions where one is enough show");
     for row in &whole.rows {
         let stored = |index: usize| (row.stored[index].bytes, row.stored[index].drawn.rms);
         assert!(stored(0).0 > stored(1).0 && stored(1).0 > stored(2).0, "u8 is the smaller: {}", row.basis.name());

@@ -113,7 +113,7 @@ pub struct Worst {
 pub struct Stored {
     /// How the coefficients are held.
     pub encoding: Encoding,
-    /// Bytes of all sheets; those without normal maps hold one function where the basis can be cut to it.
+    /// Bytes of all sheets; those without normal maps hold an ordinary light map.
     pub bytes: u64,
     /// The error at the normals that are drawn, what the encoding loses included.
     pub drawn: Drawn,

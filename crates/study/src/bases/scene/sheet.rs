@@ -70,9 +70,10 @@ impl Plate {
         (mesh.name.clone(), mesh.position(point.triangle as usize, u, v).to_array())
     }
 
-    /// The functions that the sheet holds where the maps are in `basis`: one is enough where no normal map is, if the basis can be cut to it.
+    /// The functions that the sheet holds where the maps are in `basis`: that of an ordinary light map where no normal
+    /// map is.
     pub(super) fn held(&self, basis: Basis) -> Basis {
-        if self.is_bent { basis } else { basis.cut(1).unwrap_or(basis) }
+        if self.is_bent { basis } else { Basis::ModifiedH1 }
     }
 
     /// The coefficients of its texels, `[function][row][column][channel]`; 0 where nothing is known.
