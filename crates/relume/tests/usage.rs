@@ -60,7 +60,7 @@ fn wrong_usage_ends_with_2_and_a_reason() {
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--rotate", "1,2"], "90,0,0"),
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--camera", "1,2,3"], "seven numbers"),
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--backend", "magic"], "magic"),
-        (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--basis", "h5"], "modified-h-6"),
+        (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--basis", "h5"], "modified-h6"),
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--functions", "few"], "few"),
         (&["render", "a.prt", "--probe", "builtin:sky", "-o", "a.png", "--albedo", "dim"], "dim"),
         (&["reference", "builtin:plane", "--probe", "builtin:sky", "-o", "a.exr", "--light", "some"], "bands:N"),
