@@ -213,6 +213,46 @@ fn cylinder() -> (Scene, SheetSettings) {
     (scene, SheetSettings { meshes: vec![0], width: 48, height: 16, directional: true })
 }
 
+/// The two halves of the tube as meshes in sheets of their own, of other sizes: the light goes on from one to the other.
+#[test]
+fn seams_between_sheets_do_not_show() {
+    let (mut scene, whole) = cylinder();
+    let tube = scene.meshes.remove(0);
+    let half = tube.triangles.len() / 2;
+    for (k, triangles) in [&tube.triangles[half..], &tube.triangles[..half]].into_iter().enumerate() {
+        scene
+            .meshes
+            .insert(0, scene::Mesh { name: format!("half {k}"), triangles: triangles.to_vec(), ..tube.clone() });
+    }
+    let sheet = |mesh: usize, scale: u32| SheetSettings {
+        meshes: vec![mesh],
+        width: whole.width * scale,
+        height: whole.height * scale,
+        directional: true,
+    };
+    let sheets = vec![sheet(0, 1), sheet(1, 2)];
+    let light = uneven(3);
+    let largest = |stitch: bool| {
+        let asked = MapSettings { sheets: sheets.clone(), stitch, ..settings(Basis::ModifiedH1, &whole) };
+        let prt = baked(&scene, &fixed(3, Sampler::OwenSobol, 32, 0), asked, Some(fixed_light(light.clone())));
+        let maps = maps(&prt);
+        let lit: Vec<coeff_io::Lit> = maps.sheets.iter().map(|sheet| sheet.lit(maps, &light)).collect();
+        let read = |side: &scene::lightmap::SeamSide| {
+            let (lit, at) = (&lit[side.mesh as usize], side.ends[0].midpoint(side.ends[1]));
+            bilinear(&lit.functions[0], lit.width, lit.height, at.x, at.y)
+        };
+        let between: Vec<f32> = seams(&scene, &[0, 1])
+            .iter()
+            .filter(|seam| seam.sides[0].mesh != seam.sides[1].mesh)
+            .map(|seam| (read(&seam.sides[0]) - read(&seam.sides[1])).abs())
+            .collect();
+        assert!(between.len() >= 2, "{between:?}");
+        between.into_iter().fold(0.0, f32::max)
+    };
+    let (stitched, apart) = (largest(true), largest(false));
+    assert!(apart > 4.0 * stitched, "left alone {apart}, stitched {stitched}");
+}
+
 fn bilinear(texels: &[[f32; 3]], width: u32, height: u32, u: f32, v: f32) -> f32 {
     let (x, y) = (u * width as f32 - 0.5, v * height as f32 - 0.5);
     let (x0, y0) = (x.floor(), y.floor());
