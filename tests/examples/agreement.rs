@@ -4,13 +4,12 @@
 
 #![expect(clippy::print_stdout, reason = "an example that prints a table")]
 
+mod named;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
 use coeff_io::{Bounces, Quality};
-use probe_io::{Environment, LoadOptions};
 use sh_math::Bands;
-use std::path::Path;
 use std::time::Instant;
 use support::{BandLight, Subject, measure};
 
@@ -25,14 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some(rays) => Quality::Rays(rays.parse()?),
         None => bake::settings::standard().quality,
     };
-    let scene = match scene_name.strip_prefix("builtin:") {
-        Some(name) => scene::builtin(name).ok_or("no such scene")?,
-        None => scene::load(Path::new(scene_name))?,
-    };
-    let environment = match probe_name.strip_prefix("builtin:") {
-        Some(name) => probe_io::builtin(name).ok_or("no such probe")?,
-        None => Environment::load(Path::new(probe_name), &LoadOptions::lenient())?.0,
-    };
+    let (scene, environment) = (named::scene(scene_name)?, named::probe(probe_name)?);
     let bands = Bands::new(bake::settings::standard().bands).ok_or("no such number of bands")?;
     let light = BandLight::new(&sh_math::project(bands, environment.samples()));
     println!("{scene_name} under {probe_name}: {} vertices", scene.vertex_count());

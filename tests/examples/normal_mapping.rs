@@ -8,13 +8,13 @@
 
 #[path = "../tests/mapped/mod.rs"]
 mod mapped;
+mod named;
 #[path = "../tests/support/mod.rs"]
 #[expect(unused_imports, dead_code, reason = "only its light is used")]
 mod support;
 
 use coeff_io::{Bounces, Camera, Prt, Quality};
 use mapped::{Shot, Truth, baked, drawn, windowed};
-use probe_io::{Environment, LoadOptions};
 use sh_math::Rgb;
 use sh_math::hemisphere::Basis;
 use std::path::Path;
@@ -29,14 +29,7 @@ fn main() -> Result<(), Failure> {
     let [scene_name, probe_name, bands, size, paths, ..] = &arguments[..] else {
         return Err("give: normal_mapping -- SCENE PROBE BANDS SIZE PATHS [F.prt VIEW]".into());
     };
-    let scene = match scene_name.strip_prefix("builtin:") {
-        Some(name) => scene::builtin(name).ok_or("no such scene")?,
-        None => scene::load(Path::new(scene_name))?,
-    };
-    let environment = match probe_name.strip_prefix("builtin:") {
-        Some(name) => probe_io::builtin(name).ok_or("no such probe")?,
-        None => Environment::load(Path::new(probe_name), &LoadOptions::lenient())?.0,
-    };
+    let (scene, environment) = (named::scene(scene_name)?, named::probe(probe_name)?);
     let light = windowed(&environment, bands.parse()?);
     let mut prt = match arguments.get(5) {
         Some(file) => Prt::read(Path::new(file))?,

@@ -8,6 +8,8 @@
 
 #![expect(clippy::print_stdout, reason = "an example that prints a table")]
 
+mod named;
+
 use bake::{Sampled, sample};
 use coeff_io::{Quality, Refine, Sampler, Settings};
 use glam::Vec3;
@@ -25,10 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let names: Vec<String> = std::env::args().skip(1).collect();
     let mut scenes = vec![city(), foliage()];
     for name in &names {
-        let mut scene = match name.strip_prefix("builtin:") {
-            Some(builtin) => scene::builtin(builtin).ok_or("no such scene")?,
-            None => scene::load(Path::new(name))?,
-        };
+        let mut scene = named::scene(name)?;
         scene.name = Path::new(name).file_stem().map_or(name.clone(), |stem| stem.to_string_lossy().into_owned());
         scenes.push(scene);
     }
@@ -39,16 +38,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut all = Curves::default();
     let mut reached = Vec::new();
     for scene in &scenes {
-        let curves = Curves::of(scene)?;
+        let truth = look(scene, Sampler::OwenSobol, Quality::Rays(1 << 16), 1000)?;
+        let curves = Curves::of(scene, &truth)?;
         curves.print(&scene.name);
-        reached.push(curves.asked[0].summary()[0]);
+        reached.push((scene, truth, curves.asked[0].summary()[0]));
         all.add(curves);
     }
     all.print("all together");
     println!("\n| scene | 95 % of errors below | oracle, Owen-Sobol | oracle, Fibonacci lattice |");
     println!("|---|---|---|---|");
-    for (scene, error) in scenes.iter().zip(reached) {
-        let truth = look(scene, Sampler::OwenSobol, Quality::Rays(1 << 16), 1000)?;
+    for (scene, truth, error) in reached {
         let [sobol, lattice] =
             [Sampler::OwenSobol, Sampler::Fibonacci].map(|sampler| oracle(scene, sampler, &truth, error));
         println!("| {} | {error:.4} | {:.0} | {:.0} |", scene.name, sobol?, lattice?);
@@ -67,13 +66,12 @@ struct Curves {
 }
 
 impl Curves {
-    fn of(scene: &Scene) -> Result<Self, Box<dyn Error>> {
-        let truth = look(scene, Sampler::OwenSobol, Quality::Rays(1 << 16), 1000)?;
+    fn of(scene: &Scene, truth: &[Sampled]) -> Result<Self, Box<dyn Error>> {
         if truth.is_empty() {
             return Err(format!("{}: no receiver needs rays, so there is nothing to judge", scene.name).into());
         }
         let judge = |sampler, quality| -> Result<Judged, bake::Error> {
-            Ok(Judged::of(&look(scene, sampler, quality, 1)?, &truth))
+            Ok(Judged::of(&look(scene, sampler, quality, 1)?, truth))
         };
         let fixed = |sampler| (7..=16).map(|power| judge(sampler, Quality::Rays(1 << power))).collect::<Result<_, _>>();
         let asked = ASKED.map(|error| judge(Sampler::OwenSobol, Quality::Error(error)));

@@ -80,11 +80,10 @@ pub(crate) struct Arrival {
     pub(crate) inside_share: f32,
     /// Estimated error of the irradiance in 3 bands, against that of an open point.
     pub(crate) error: f32,
-    /// Rays that were traced.
+    /// Any-hit rays traced.
     pub(crate) visibility_rays: u64,
+    /// Closest-hit rays traced.
     pub(crate) bounce_rays: u64,
-    /// Directions that were looked up, with distances in metres.
-    pub(crate) seen: Vec<(Vec3, f32)>,
 }
 
 /// What is needed beside the bank.
@@ -156,7 +155,6 @@ impl<'a> Arrivals<'a> {
             error: direct.error,
             visibility_rays: direct.visibility_rays,
             bounce_rays: 0,
-            seen: Vec::new(),
         };
         if direct.openness < 1.0 {
             let blockers = self.gatherer.blockers(receiver, index, step, direct.openness, worker);
@@ -167,7 +165,6 @@ impl<'a> Arrivals<'a> {
                 let closed: Vec<f32> = open.iter().zip(&direct.transfer).map(|(all, open)| all - open).collect();
                 self.add_sent(&blockers.found, &closed, &mut arrival.values);
             }
-            arrival.seen = blockers.found.iter().map(|(direction, hit, _)| (*direction, hit.t)).collect();
         }
         let angle = self.gatherer.bank.domain.solid_angle() as f32;
         arrival.values.iter_mut().for_each(|value| *value *= angle);

@@ -10,7 +10,7 @@ mod join;
 mod plate;
 mod stitch;
 
-use crate::arrival::{Arrivals, Shape, to_irradiance};
+use crate::arrival::{Arrival, Arrivals, Shape, to_irradiance};
 use crate::domain::Domain;
 use crate::error::Error;
 use crate::extras::Done;
@@ -141,12 +141,12 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         gathered.record.unfilled = gathered.fill_from_vertices(done, shape) as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
     }
-    if settings.stitch && settings.dilation > 0 {
-        join::stitch_all(done, settings, &mut sheets);
-    }
     let mut sheet_of_mesh = vec![None; prt.meshes.len()];
     for (index, sheet) in (0..).zip(&settings.sheets) {
         sheet.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(index));
+    }
+    if settings.stitch && settings.dilation > 0 {
+        join::stitch_all(done, &sheet_of_mesh, &mut sheets);
     }
     let mut record = summed(&sheets);
     // Left out by --effects, normal maps are not drawn.
@@ -240,26 +240,17 @@ fn receiver(done: &Done<'_>, texel: &Texel) -> Receiver {
     Receiver::new(at, Some(mesh.normal(triangle, u, v)), (b - a).cross(c - a), centre).0
 }
 
-/// What a texel keeps of what arrives.
-struct Kept {
-    values: Vec<f32>,
-    openness: f32,
-    inside_share: f32,
-    error: f32,
-    visibility_rays: u64,
-    bounce_rays: u64,
-}
-
+/// What arrives at every point, in their order.
 fn arrive(
     done: &Done<'_>,
     arrivals: &Arrivals<'_>,
     points: &[Receiver],
     index: &(dyn Fn(usize) -> u32 + Sync),
-) -> Result<Vec<Kept>, Error> {
+) -> Result<Vec<Arrival>, Error> {
     let total = points.len() as u64;
     done.monitor.begin(Stage::Texels, total);
     let order = morton_order(points, 0..points.len() as u32);
-    let chunks: Vec<Vec<(u32, Kept)>> = order
+    let chunks: Vec<Vec<(u32, Arrival)>> = order
         .par_chunks(CHUNK)
         .map_init(Worker::new, |worker, ids| {
             let mut out = Vec::with_capacity(ids.len());
@@ -267,25 +258,17 @@ fn arrive(
                 if done.monitor.is_cancelled() {
                     break;
                 }
-                let a = arrivals.at(&points[id as usize], index(id as usize), worker);
-                done.monitor.receiver_done(Stage::Texels, total, a.visibility_rays + a.bounce_rays);
-                let kept = Kept {
-                    values: a.values,
-                    openness: a.openness,
-                    inside_share: a.inside_share,
-                    error: a.error,
-                    visibility_rays: a.visibility_rays,
-                    bounce_rays: a.bounce_rays,
-                };
-                out.push((id, kept));
+                let arrival = arrivals.at(&points[id as usize], index(id as usize), worker);
+                done.monitor.receiver_done(Stage::Texels, total, arrival.visibility_rays + arrival.bounce_rays);
+                out.push((id, arrival));
             }
             out
         })
         .collect();
     done.monitor.check()?;
-    let mut all: Vec<(u32, Kept)> = chunks.into_iter().flatten().collect();
+    let mut all: Vec<(u32, Arrival)> = chunks.into_iter().flatten().collect();
     all.sort_unstable_by_key(|(id, _)| *id);
-    Ok(all.into_iter().map(|(_, kept)| kept).collect())
+    Ok(all.into_iter().map(|(_, arrival)| arrival).collect())
 }
 
 /// The numbers of the file: `[function][coefficient of the light]` pictures.

@@ -115,12 +115,16 @@ fn blocks<F: Format>(layers: &Layers) -> Option<Blocks<'_>> {
     let own = F::ranges(layers.channels as usize);
     let layer = |layer: usize| {
         let curve = Curve::of_byte(*layers.bytes.get(layer)?)?;
-        let at = |channel: usize| ranges + 8 * (layer * own + channel.min(own - 1));
-        let range = |channel| [f32_at(&layers.bytes, at(channel)), f32_at(&layers.bytes, at(channel) + 4)];
-        Some((curve, std::array::from_fn(range)))
+        Some((curve, std::array::from_fn(|channel| range_of(layers, ranges, layer * own + channel.min(own - 1)))))
     };
     let ranges = (0..layers.count as usize).map(layer).collect::<Option<_>>()?;
     Some(Blocks { bytes: layers.bytes.get(first..)?, layers: ranges })
+}
+
+/// The least and the greatest number of range `number`, of those that begin at byte `ranges`.
+fn range_of(layers: &Layers, ranges: usize, number: usize) -> [f32; 2] {
+    let at = ranges + 8 * number;
+    [f32_at(&layers.bytes, at), f32_at(&layers.bytes, at + 4)]
 }
 
 /// What stands before the blocks of layers of so many channels: the inverse of [`Layers::blocks`].
@@ -147,10 +151,7 @@ pub(crate) fn decode<F: Format>(layers: &Layers, layer: usize) -> Vec<f32> {
     let (width, height, channels) = (layers.width as usize, layers.height as usize, layers.channels as usize);
     let (across, own) = (width.div_ceil(4), F::ranges(channels));
     let curve = Curve::of_byte(layers.bytes[layer]).expect("the curve is known");
-    let range = |channel: usize| {
-        let at = ranges + 8 * (layer * own + channel.min(own - 1));
-        [f32_at(&layers.bytes, at), f32_at(&layers.bytes, at + 4)]
-    };
+    let range = |channel: usize| range_of(layers, ranges, layer * own + channel.min(own - 1));
     let mut values = vec![0.0; layers.plane() * channels];
     let size = across * height.div_ceil(4) * F::BYTES;
     for (place, block) in layers.bytes[first + layer * size..][..size].chunks_exact(F::BYTES).enumerate() {

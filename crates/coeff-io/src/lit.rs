@@ -83,10 +83,7 @@ impl Maps {
     pub fn lit_in(&self, sheet: &Sheet, light: &Rgb, asked: Basis) -> (Basis, Lit) {
         let held = self.held(sheet);
         let shown = Self::shown(held, asked);
-        let mut lit = sheet.lit(self, &self.light_of(light).values);
-        // Functions that are not held came back as zeros.
-        lit.functions.truncate(held.count());
-        (shown, lit.changed(held, shown))
+        (shown, sheet.lit(self, &self.light_of(light).values).changed(held, shown))
     }
 
     /// Whether any mesh shows a map.

@@ -73,7 +73,8 @@ pub struct Lit {
 }
 
 impl Sheet {
-    /// The coefficients under a light of `depth` or more coefficients in world axes (unused where the light is fixed).
+    /// The coefficients, of the functions that the sheet holds, under a light of `depth` or more coefficients in world axes (unused where the
+    /// light is fixed).
     ///
     /// # Panics
     /// When the light has fewer coefficients.
@@ -87,11 +88,9 @@ impl Sheet {
             MapLight::Fixed { .. } => vec![[1.0; 3]],
             MapLight::Relightable { .. } => light[..depth].to_vec(),
         };
-        let held = layers.count as usize / depth;
         let function = |k: usize| {
             let mut sum = vec![[0.0f32; 3]; plane];
-            // The functions that a sheet does not hold are 0.
-            for (i, factor) in factors.iter().enumerate().take(if k < held { depth } else { 0 }) {
+            for (i, factor) in factors.iter().enumerate() {
                 let layer = layers.decode_layer((k * depth + i) as u32);
                 for (out, texel) in sum.iter_mut().zip(layer.chunks_exact(channels)) {
                     let texel = rgb(texel);
@@ -100,7 +99,7 @@ impl Sheet {
             }
             sum
         };
-        let functions = (0..maps.basis.count()).map(function).collect();
+        let functions = (0..layers.count as usize / depth).map(function).collect();
         Lit { width: layers.width, height: layers.height, functions }
     }
 }

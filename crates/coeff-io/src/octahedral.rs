@@ -15,10 +15,16 @@ pub fn direction(side: u32, row: u32, column: u32) -> Vec3 {
 /// The unit direction at a place in [-1, 1]^2.
 #[must_use]
 pub fn of_square(place: Vec2) -> Vec3 {
+    on_octahedron(place).normalize()
+}
+
+/// The point of the octahedron `|x| + |y| + |z| = 1` at a place in [-1, 1]^2.
+#[must_use]
+pub fn on_octahedron(place: Vec2) -> Vec3 {
     let z = 1.0 - place.x.abs() - place.y.abs();
     let fold = (-z).max(0.0);
     let unfolded = |v: f32| v - fold.copysign(v);
-    Vec3::new(unfolded(place.x), unfolded(place.y), z).normalize()
+    Vec3::new(unfolded(place.x), unfolded(place.y), z)
 }
 
 /// The place in [-1, 1]^2 of a direction of any length but 0.

@@ -55,15 +55,8 @@ pub(crate) struct VolumeText {
     channels: u32,
     resolution: u32,
     reach: f32,
-    nodes: Vec<NodeText>,
+    nodes: Vec<Node>,
     probes: Vec<ProbeText>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum NodeText {
-    Split(u32),
-    Leaf([u32; 8]),
 }
 
 /// A probe: `coefficients` is `[function of 9][depth][channel]`, `distances` `[row][column][mean, mean square]`, both without inner brackets.
@@ -87,10 +80,6 @@ impl VolumeText {
             coefficients: volume.values[i * values..][..values].to_vec(),
             distances: volume.distances[i * distances..][..distances].to_vec(),
         };
-        let node = |node: &Node| match *node {
-            Node::Split(first) => NodeText::Split(first),
-            Node::Leaf(probes) => NodeText::Leaf(probes),
-        };
         Self {
             convention: sh_math::CONVENTION.into(),
             origin: volume.origin,
@@ -100,7 +89,7 @@ impl VolumeText {
             channels: volume.channels,
             resolution: volume.resolution,
             reach: volume.reach,
-            nodes: volume.nodes.iter().map(node).collect(),
+            nodes: volume.nodes.clone(),
             probes: (0..volume.positions.len()).map(probe).collect(),
         }
     }
@@ -112,15 +101,11 @@ impl VolumeText {
         if !self.probes.iter().all(|probe| Some(lengths(probe)) == first) {
             return None;
         }
-        let node = |node: &NodeText| match *node {
-            NodeText::Split(first) => Node::Split(first),
-            NodeText::Leaf(probes) => Node::Leaf(probes),
-        };
         Some(Volume {
             origin: self.origin,
             spacing: self.spacing,
             cells: self.cells,
-            nodes: self.nodes.iter().map(node).collect(),
+            nodes: self.nodes,
             light: self.light,
             channels: self.channels,
             values: self.probes.iter().flat_map(|probe| &probe.coefficients).copied().collect(),

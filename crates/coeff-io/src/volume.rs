@@ -1,6 +1,7 @@
 //! Irradiance volumes: probes in space whose light moving objects take.
 
 use crate::MapLight;
+use serde::{Deserialize, Serialize};
 
 /// Functions per probe: 3 bands.
 pub(crate) const FUNCTIONS: usize = 9;
@@ -43,7 +44,8 @@ pub struct Volume {
 }
 
 /// A cell of a [`Volume`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Node {
     /// The first of its eight parts in [`Volume::nodes`].
     Split(u32),

@@ -3,17 +3,17 @@
 use crate::bases::write;
 use crate::console::Console;
 use crate::draw::Window;
-use crate::sheets::{SMALLEST, SheetChoice};
+use crate::extras::fixed_light;
+use crate::sheets::{PADDING, SMALLEST, SheetChoice};
 use crate::source::{self, ProbeSource, ReadOptions, SceneSource};
 use crate::usage::Usage;
 use crate::{bake as baking, cost, interrupt, output, settings};
 use anyhow::Result;
-use bake::{Directional, FixedLight, SheetSettings};
+use bake::{Directional, SheetSettings};
 use coeff_io::{Bounces, Quality, Refine, Settings};
 use probe_io::Environment;
 use scene::Scene;
 use serde_json::{Value, json};
-use sh_math::Bands;
 use std::io::Write;
 use std::path::Path;
 use study::bases::scene::{Comparison, Goal, PICKED, Request, Row, Stored, compare, nanoseconds};
@@ -78,7 +78,7 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     output::check_all(folder, &FILES)?;
     let mut scene = scene.load(console)?;
     let environment = probe.load(&options.read, console)?;
-    let choice = SheetChoice { texels: options.texels, unwrap: options.unwrap, padding: 2, only: Vec::new() };
+    let choice = SheetChoice { texels: options.texels, unwrap: options.unwrap, padding: PADDING, only: Vec::new() };
     let sheets = choice.sheets(&mut scene, console)?;
     interrupt::watch()?;
     let found = bake(&scene, &settings, &sheets, &environment, options.window, console)?;
@@ -124,9 +124,7 @@ fn bake(
     window: Window,
     console: &Console,
 ) -> Result<Directional> {
-    let bands = Bands::new(settings.bands).ok_or_else(|| Usage(format!("--bands {}: use 1 to 32", settings.bands)))?;
-    let coefficients = window.apply(&sh_math::project(bands, environment.samples())).values;
-    let light = FixedLight { name: environment.name.clone(), coefficients };
+    let light = fixed_light(environment, settings.bands, window)?;
     let progress = console.progress();
     bake::directional(scene, settings, sheets, &light, &baking::watched(&progress, None)).map_err(baking::fault)
 }

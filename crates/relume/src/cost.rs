@@ -2,7 +2,7 @@
 
 use crate::console::Console;
 use crate::lens::{self, Lens};
-use crate::sheets::{SMALLEST, SheetChoice, has_normal_maps};
+use crate::sheets::{PADDING, SMALLEST, SheetChoice, has_normal_maps};
 use crate::source::{ProbeOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{interrupt, output, settings};
@@ -122,7 +122,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
 
 impl Options {
     fn sheet_choice(&self) -> SheetChoice {
-        SheetChoice { texels: self.texels, unwrap: false, padding: 2, only: Vec::new() }
+        SheetChoice { texels: self.texels, unwrap: false, padding: PADDING, only: Vec::new() }
     }
 
     /// The scene with coordinates of light maps and their sheets, where normal maps or the user ask for them.

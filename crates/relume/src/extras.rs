@@ -8,6 +8,7 @@ use crate::usage::Usage;
 use crate::volume::VolumeOptions;
 use anyhow::Result;
 use bake::{Extras, FixedLight};
+use probe_io::Environment;
 use scene::Scene;
 use sh_math::Bands;
 
@@ -61,7 +62,9 @@ impl ExtraOptions {
             (LightMode::Fixed, None) => {
                 return Err(Usage("--light fixed bakes a light in: say which with --probe".into()).into());
             }
-            (LightMode::Fixed, Some((probe, read))) => Some(self.fixed(probe, read, bands, console)?),
+            (LightMode::Fixed, Some((probe, read))) => {
+                Some(fixed_light(&probe.load(read, console)?, bands, self.window.unwrap_or(Window::None))?)
+            }
         };
         if light.is_some() && !in_texture && volume.is_none() {
             return Err(
@@ -79,11 +82,11 @@ impl ExtraOptions {
         }
         Ok(Extras { maps, volume, light })
     }
+}
 
-    fn fixed(&self, probe: &ProbeSource, read: &ReadOptions, bands: u32, console: &Console) -> Result<FixedLight> {
-        let environment = probe.load(read, console)?;
-        let bands = Bands::new(bands).ok_or_else(|| Usage(format!("--bands {bands}: use 1 to 32")))?;
-        let light = self.window.unwrap_or(Window::None).apply(&sh_math::project(bands, environment.samples()));
-        Ok(FixedLight { name: environment.name, coefficients: light.values })
-    }
+/// What so many bands hold of a light, to be baked in.
+pub(crate) fn fixed_light(environment: &Environment, bands: u32, window: Window) -> Result<FixedLight> {
+    let bands = Bands::new(bands).ok_or_else(|| Usage(format!("--bands {bands}: use 1 to 32")))?;
+    let light = window.apply(&sh_math::project(bands, environment.samples()));
+    Ok(FixedLight { name: environment.name.clone(), coefficients: light.values })
 }

@@ -1,16 +1,15 @@
 //! The options of light maps.
 
 use crate::console::Console;
-use crate::sheets::{SMALLEST, SheetChoice};
+use crate::sheets::{PADDING, SMALLEST, SheetChoice};
 use anyhow::Result;
 use bake::MapSettings;
 use coeff_io::Encoding;
 use scene::Scene;
 use sh_math::hemisphere::Basis;
 
-/// Texels along a side, and free ones around a chart, where none are asked for.
+/// Texels along a side where none are asked for.
 const TEXELS: u32 = 1024;
-const PADDING: u32 = 2;
 
 /// How light maps are baked, as typed.
 #[derive(Debug, Clone, clap::Args)]

@@ -11,6 +11,8 @@ use scene::lightmap::{self, Density, FaultKind, Unwrap};
 const FILLED: f64 = 0.6;
 /// A sheet of which less is filled holds much of nothing.
 const POORLY: f32 = 0.35;
+/// Free texels around a chart where none are asked for.
+pub(crate) const PADDING: u32 = 2;
 /// Fewest texels along a side of a sheet.
 pub(crate) const SMALLEST: u32 = 16;
 

@@ -23,6 +23,7 @@ mod quadrature;
 mod spherical;
 mod zernike;
 
+pub use change::HARMONICS;
 pub use fit::Conversion;
 pub use quadrature::quadrature;
 

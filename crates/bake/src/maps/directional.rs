@@ -1,6 +1,5 @@
 //! What arrives at texels before any basis: what bases are judged by.
 
-use super::frame::HARMONICS;
 use super::{Gathered, MapSettings, SheetSettings, functions, gather};
 use crate::bake::bake_then;
 use crate::domain::Domain;
@@ -9,7 +8,7 @@ use crate::{Error, ProgressFn};
 use coeff_io::{Encoding, Settings};
 use rayon::prelude::*;
 use scene::Scene;
-use sh_math::hemisphere::Basis;
+use sh_math::hemisphere::{Basis, HARMONICS};
 
 /// What light arrives at the texels of sheets, before any basis: 5 bands of spherical harmonics of irradiance / pi over the normals of the
 /// tangent frame. What bases are judged by.

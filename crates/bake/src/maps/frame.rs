@@ -4,9 +4,9 @@ use crate::arrival::Shape;
 use glam::{Mat3, Vec3, Vec4};
 use sampling::frame::Frame;
 use scene::Mesh;
-use sh_math::hemisphere::Basis;
+use sh_math::Bands;
+use sh_math::hemisphere::{Basis, HARMONICS};
 use sh_math::rotate::Rotation;
-use sh_math::{Bands, evaluate_f64};
 
 /// Axes of normal maps at a point, orthonormal.
 #[derive(Debug, Clone, Copy)]
@@ -58,30 +58,12 @@ pub(crate) struct Converter {
     rows: Vec<Vec<f32>>,
 }
 
-/// Most harmonics that are converted: 5 bands.
-pub(crate) const HARMONICS: usize = 25;
-
 impl Converter {
     /// # Panics
     /// With more than 5 bands.
     pub(crate) fn new(basis: Basis, functions: Bands) -> Self {
-        let n = functions.coefficients();
-        assert!(n <= HARMONICS, "5 bands over normals at most");
-        let harmonics = |normal| {
-            let mut values = [0.0; HARMONICS];
-            evaluate_f64(functions, normal, &mut values[..n]);
-            values
-        };
-        let rows = match basis {
-            // An ordinary light map: exact at the surface's own normal, where the others have the least error over all normals.
-            Basis::ModifiedH1 => {
-                let mut one = [0.0];
-                basis.evaluate_f64(glam::DVec3::Z, &mut one);
-                vec![harmonics(glam::DVec3::Z).map(|value| value / one[0])]
-            }
-            _ => basis.fit(harmonics),
-        };
-        let rows = rows.into_iter().map(|row| row[..n].iter().map(|&x| x as f32).collect()).collect();
+        let row = |row: [f64; HARMONICS]| row[..functions.coefficients()].iter().map(|&x| x as f32).collect();
+        let rows = basis.of_harmonics(functions).into_iter().map(row).collect();
         Self { functions, basis, rows }
     }
 

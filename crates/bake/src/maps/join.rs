@@ -1,8 +1,8 @@
 //! Where the light of sheets has to agree: look-ups on both sides of every seam.
 
+use super::Gathered;
 use super::plate::{NONE, Plate};
 use super::stitch::{Agreement, stitch};
-use super::{Gathered, MapSettings};
 use crate::extras::Done;
 use glam::Vec2;
 use scene::lightmap::seams;
@@ -13,18 +13,15 @@ const PER_TEXEL: f32 = 2.0;
 const MOST_PER_SLOT: usize = 32;
 
 /// Makes both sides of every seam between the meshes of all sheets agree.
-pub(super) fn stitch_all(done: &Done<'_>, settings: &MapSettings, sheets: &mut [Gathered]) {
-    let mut sheet_of = vec![None; done.scene.meshes.len()];
-    for (index, sheet) in settings.sheets.iter().enumerate() {
-        sheet.meshes.iter().for_each(|&mesh| sheet_of[mesh] = Some(index));
-    }
-    let meshes: Vec<usize> = (0..sheet_of.len()).filter(|&mesh| sheet_of[mesh].is_some()).collect();
+pub(super) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], sheets: &mut [Gathered]) {
+    let meshes: Vec<usize> = (0..sheet_of_mesh.len()).filter(|&mesh| sheet_of_mesh[mesh].is_some()).collect();
+    let sheet_of = |mesh: u32| sheet_of_mesh[mesh as usize].expect("only meshes with a sheet") as usize;
     let mut first_slot = vec![0u32];
     for sheet in sheets.iter() {
         first_slot.push(first_slot[first_slot.len() - 1] + sheet.plate.slots() as u32);
     }
     let look_up = |mesh: u32, uv: Vec2| -> Agreement {
-        let sheet = sheet_of[mesh as usize].expect("only meshes with a sheet");
+        let sheet = sheet_of(mesh);
         bilinear(&sheets[sheet].plate, uv)
             .into_iter()
             .map(|(slot, weight)| (slot + first_slot[sheet], weight))
@@ -33,7 +30,7 @@ pub(super) fn stitch_all(done: &Done<'_>, settings: &MapSettings, sheets: &mut [
     let mut agreements = Vec::new();
     for seam in seams(done.scene, &meshes) {
         let length = |side: &scene::lightmap::SeamSide| {
-            let plate = &sheets[sheet_of[side.mesh as usize].expect("only meshes with a sheet")].plate;
+            let plate = &sheets[sheet_of(side.mesh)].plate;
             ((side.ends[1] - side.ends[0]) * Vec2::new(plate.width as f32, plate.height as f32)).length()
         };
         let points =

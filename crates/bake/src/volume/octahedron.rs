@@ -11,19 +11,8 @@ pub(super) fn direction(x: f32, y: f32) -> Vec3 {
 
 /// Solid angle of a small part of the square, over its area: `1 / |p|^3` on the octahedron `|x| + |y| + |z| = 1`.
 pub(super) fn density(x: f32, y: f32) -> f32 {
-    let square = unfolded(x, y).length_squared();
+    let square = octahedral::on_octahedron(Vec2::new(x, y)).length_squared();
     1.0 / (square * square.sqrt())
-}
-
-/// The point of the octahedron.
-fn unfolded(x: f32, y: f32) -> Vec3 {
-    let z = 1.0 - x.abs() - y.abs();
-    if z >= 0.0 {
-        return Vec3::new(x, y, z);
-    }
-    // The lower half is folded out over the diagonals.
-    let [fold_x, fold_y] = [1.0 - y.abs(), 1.0 - x.abs()];
-    Vec3::new(fold_x.copysign(x), fold_y.copysign(y), z)
 }
 
 #[cfg(test)]

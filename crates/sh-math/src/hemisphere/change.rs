@@ -1,6 +1,11 @@
 //! From one basis to another: fewer functions of the same, or the nearest signal that other functions can make.
 
 use super::Basis;
+use crate::{Bands, evaluate_f64};
+use glam::DVec3;
+
+/// Most spherical harmonics that [`Basis::of_harmonics`] takes: 5 bands.
+pub const HARMONICS: usize = 25;
 
 impl Basis {
     /// The basis of the first `functions` functions of this one, where leaving out the others is the right thing to do; none elsewhere.
@@ -32,6 +37,29 @@ impl Basis {
             source.evaluate_f64(normal, &mut values);
             values
         })
+    }
+
+    /// The matrix that takes the spherical harmonics coefficients of a signal over normals to those of this basis: one row per function,
+    /// one column per harmonic of so many bands, 0 beyond them.
+    ///
+    /// The least square error over the hemisphere ([`Basis::fit`] of each harmonic). The modified H-basis of one function alone, an
+    /// ordinary light map, is exact at the surface's own normal instead. Costs some tens of microseconds; keep it.
+    ///
+    /// # Panics
+    /// With more than 5 bands.
+    #[must_use]
+    pub fn of_harmonics(self, bands: Bands) -> Vec<[f64; HARMONICS]> {
+        let harmonics = |normal| {
+            let mut values = [0.0; HARMONICS];
+            evaluate_f64(bands, normal, &mut values);
+            values
+        };
+        if self != Self::ModifiedH1 {
+            return self.fit(harmonics);
+        }
+        let mut one = [0.0];
+        self.evaluate_f64(DVec3::Z, &mut one);
+        vec![harmonics(DVec3::Z).map(|value| value / one[0])]
     }
 
     /// The basis of a name as people type it: [`Basis::name`] with letters of either case, blanks and hyphens left out or not, such as

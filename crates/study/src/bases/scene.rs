@@ -24,8 +24,6 @@ use sh_math::hemisphere::Basis;
 use sheet::Plate;
 use std::f64::consts::TAU;
 
-/// Harmonics that the truth has.
-const HARMONICS: usize = 25;
 /// Encodings that are compared.
 const ENCODINGS: [Encoding; 4] = [Encoding::F32, Encoding::F16, Encoding::U8, Encoding::Bc6h];
 

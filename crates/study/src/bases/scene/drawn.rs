@@ -41,7 +41,7 @@ impl<'a> Views<'a> {
         let values: Vec<Vec<_>> = normals.iter().map(|list| list.iter().map(|&n| harmonics(n)).collect()).collect();
         let step = found.texels.len().div_ceil(MOST_TEXELS).max(1);
         let look = |texel: &'a bake::DirectionalTexel| {
-            let at = |harmonics: &[f64; super::HARMONICS]| {
+            let at = |harmonics: &[f64; sh_math::hemisphere::HARMONICS]| {
                 let channel =
                     |c: usize| harmonics.iter().zip(&texel.coefficients).map(|(y, rgb)| y * f64::from(rgb[c])).sum();
                 [0, 1, 2].map(channel)

@@ -1,8 +1,7 @@
 //! What a basis loses of a signal of 5 bands, as a quadratic form in its coefficients.
 
-use super::HARMONICS;
 use glam::DVec3;
-use sh_math::hemisphere::{Basis, quadrature};
+use sh_math::hemisphere::{Basis, HARMONICS, quadrature};
 use sh_math::{Bands, evaluate_f64};
 use std::f64::consts::TAU;
 
@@ -14,7 +13,7 @@ pub(super) struct Residual {
 
 impl Residual {
     pub(super) fn new(basis: Basis) -> Self {
-        let rows = coefficients(basis);
+        let rows = basis.of_harmonics(five());
         let mut values = [0.0; Basis::MAX_COUNT];
         let mut form = [[0.0; HARMONICS]; HARMONICS];
         for (normal, weight) in quadrature() {
@@ -44,21 +43,15 @@ impl Residual {
     }
 }
 
-/// Coefficients of a basis for each harmonic, one row per function: least squares over the hemisphere. The light map alone is exact at the
-/// surface's own normal instead, as it is baked.
-pub(super) fn coefficients(basis: Basis) -> Vec<[f64; HARMONICS]> {
-    if basis != Basis::ModifiedH1 {
-        return basis.fit(harmonics);
-    }
-    let mut one = [0.0];
-    basis.evaluate_f64(DVec3::Z, &mut one);
-    vec![harmonics(DVec3::Z).map(|value| value / one[0])]
+/// The bands over normals that signals are kept in.
+pub(super) fn five() -> Bands {
+    Bands::new(5).expect("a few bands exist")
 }
 
 /// The harmonics of 5 bands at a normal.
 pub(super) fn harmonics(normal: DVec3) -> [f64; HARMONICS] {
     let mut values = [0.0; HARMONICS];
-    evaluate_f64(Bands::new(5).expect("a few bands exist"), normal, &mut values);
+    evaluate_f64(five(), normal, &mut values);
     values
 }
 

@@ -1,12 +1,11 @@
 //! A sheet of texels: where they lie, and their coefficients in a basis and an encoding.
 
-use super::HARMONICS;
-use super::residual::coefficients;
+use super::residual::five;
 use bake::{Directional, SheetSettings};
 use coeff_io::{Coding, Encoding, Layers, MapLight, curves};
 use scene::Scene;
 use scene::lightmap::{Charts, Texel, texels};
-use sh_math::hemisphere::Basis;
+use sh_math::hemisphere::{Basis, HARMONICS};
 
 /// One sheet of the comparison.
 #[derive(Debug)]
@@ -78,7 +77,7 @@ impl Plate {
 
     /// The coefficients of its texels, `[function][row][column][channel]`; 0 where nothing is known.
     pub(super) fn values(&self, held: Basis, found: &Directional) -> Vec<f32> {
-        let rows = coefficients(held);
+        let rows = held.of_harmonics(five());
         let plane = self.charts.len();
         let mut values = vec![0.0; held.count() * plane * 3];
         for &texel in &self.texels {
