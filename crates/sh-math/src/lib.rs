@@ -19,6 +19,8 @@ mod evaluate;
 pub mod hemisphere;
 mod legendre;
 mod light;
+pub mod light_matrix;
+pub mod lobe;
 pub mod product;
 mod project;
 mod quarter_turn;
