@@ -62,8 +62,18 @@ fn cost(scene: &Scene, prt: &Prt, traced: u64, effect: Effect) -> EffectCost {
             }
         }
         Effect::Emission => of_textures(nothing, scene, prt, |m| m.emissive_texture, |m| m.emissive_texture),
+        Effect::Glossy => glossy(nothing, prt),
         Effect::Masks | Effect::Transmission | Effect::Motion => nothing,
     }
+}
+
+/// What gloss takes, and what every vertex would have taken as exact numbers.
+fn glossy(nothing: EffectCost, prt: &Prt) -> EffectCost {
+    let record = prt.achieved.gloss.unwrap_or_default();
+    let bytes = prt.gloss.as_ref().map_or(0, |_| record.bytes[1]);
+    let bands = prt.gloss.as_ref().map_or(prt.transfer.bands, |gloss| gloss.bands);
+    let all = 4 * u64::from(bands * bands) * prt.geometry.positions.len() as u64;
+    EffectCost { rays: record.rays[0] + record.rays[1], bytes, saved_bytes: all.saturating_sub(bytes), ..nothing }
 }
 
 /// Rays that a receiver takes at least.

@@ -5,7 +5,7 @@ use crate::field::Field;
 use crate::material::Facts;
 use crate::plan::simulates;
 use crate::receivers::{NONE, Receivers};
-use coeff_io::{Achieved, Effect, Geometry, Plan, Prt, Settings, Transfer};
+use coeff_io::{Achieved, Codebooks, Effect, Geometry, Plan, Prt, Settings, Transfer};
 use scene::{AlphaMode, Mesh, Scene, TextureSlot, Wrap};
 use std::collections::BTreeMap;
 
@@ -55,6 +55,10 @@ pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, 
         textures: parts.textures,
         maps: None,
         volume: None,
+        gloss: None,
+        transfer_textures: None,
+        codebooks: Codebooks::default(),
+        compressed: None,
     }
 }
 

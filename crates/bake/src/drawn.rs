@@ -50,6 +50,35 @@ pub(crate) fn specular(table: &Table<'_>) -> PlanRow {
     PlanRow { bytes: if d.specular { f.gloss_bytes } else { 0 }, ..row }
 }
 
+pub(crate) fn glossy(table: &Table<'_>) -> PlanRow {
+    let (f, d) = (table.facts, table.decisions);
+    let stake = if f.shiny.any() { d.gloss_stake } else { 0.0 };
+    let words = Words {
+        decision: match (d.glossy, f.shiny.any()) {
+            (true, _) => "visibility and bounces by direction for surfaces that shine".into(),
+            (false, true) => "openness dims reflections".into(),
+            (false, false) => "nothing to reflect".into(),
+        },
+        reason: match f.shiny.count() {
+            0 => "no material shines".into(),
+            n => format!(
+                "{n} materials reflect up to {} and up to {} of what stands around them is blocked",
+                percent(f.reflectance()),
+                percent(table.survey.coverage[1])
+            ),
+        },
+        stake,
+        at_stake: match stake > 0.0 {
+            false => "nothing: no reflection is blocked".into(),
+            true => format!(
+                "reflections of what is hidden, and none of what hides it: up to {} of the light",
+                percent(stake)
+            ),
+        },
+    };
+    table.row(Effect::Glossy, d.glossy, &f.shiny, words)
+}
+
 pub(crate) fn normal_maps(table: &Table<'_>) -> PlanRow {
     let (f, d) = (table.facts, table.decisions);
     let stake = match f.directional {

@@ -118,6 +118,11 @@ impl Facts {
         }
     }
 
+    /// Largest reflectance at normal incidence of a material that shines.
+    pub(crate) fn reflectance(&self) -> f32 {
+        self.materials.iter().filter(|m| m.shines).map(|m| m.reflectance).fold(0.0, f32::max)
+    }
+
     /// Looks at every permanent receiver through the tree.
     pub(crate) fn add_receivers(&mut self, scene: &Scene, world: &World<'_>, receivers: &Receivers) {
         let shadowed: Vec<bool> =

@@ -61,6 +61,9 @@ pub(crate) struct Decisions {
     pub(crate) color: bool,
     pub(crate) masks: bool,
     pub(crate) specular: bool,
+    pub(crate) glossy: bool,
+    /// Largest share of the light that a reflection blocked in the wrong places would change.
+    pub(crate) gloss_stake: f32,
     pub(crate) normal_maps: bool,
     pub(crate) emission: bool,
     pub(crate) transmission: bool,
@@ -94,12 +97,21 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
     let gain = if interreflection { gain(bounced[0]) } else { 1.0 };
     let left_out = bandwidth::left_out(&survey, &open_norms(bands(settings)), &settings.light, gain);
     let bands_needed = bandwidth::needed(&left_out, tolerance);
+    let gloss_stake = facts.reflectance() * survey.coverage[1].min(1.0);
+    let named = matches!(&settings.effects, Effects::Only(list) if list.contains(&Effect::Glossy));
+    let glossy = visibility
+        && allowed(settings, Effect::Specular)
+        && allowed(settings, Effect::Glossy)
+        && facts.shiny.any()
+        && (forced || named || gloss_stake > GLOSS_WORTH);
     let d = Decisions {
         visibility,
         interreflection,
         color: interreflection && wanted(Effect::Color, facts.colored.any()),
         masks: drawn(Effect::Masks, facts.holed.any() || forced && facts.masked.any()),
         specular: drawn(Effect::Specular, facts.shiny.any()),
+        glossy,
+        gloss_stake,
         normal_maps: drawn(
             Effect::NormalMaps,
             facts.bumpy.any() && (facts.directional || allowed(settings, Effect::Specular)),
@@ -146,6 +158,7 @@ fn meshes(facts: &Facts, d: &Decisions) -> Vec<MeshPlan> {
             Effect::Color => d.color && lit,
             Effect::Masks => d.masks && material.holes > 0.0,
             Effect::Specular => d.specular && material.shines,
+            Effect::Glossy => d.glossy && material.shines && mesh.shadowed > 0,
             Effect::NormalMaps => d.normal_maps && (material.shines || facts.directional) && material.bumpy,
             Effect::Emission => d.emission && material.emission > 0.0,
             Effect::Transmission => d.transmission && material.transmits,
@@ -161,6 +174,10 @@ fn meshes(facts: &Facts, d: &Decisions) -> Vec<MeshPlan> {
     };
     facts.meshes.iter().enumerate().map(of).collect()
 }
+
+/// Share of the light from where reflections that are blocked in the right places are worth their rays and bytes; below it one number per
+/// vertex, its openness, stands for them.
+const GLOSS_WORTH: f32 = 0.1;
 
 /// Change of the result below which a bounce is not worth simulating.
 pub(crate) fn tolerance(quality: Quality) -> f32 {

@@ -29,6 +29,7 @@ pub(crate) fn rows(facts: &Facts, survey: &Survey, settings: &Settings, decision
         Effect::Bands => table.bands(),
         Effect::Masks => drawn::masks(&table),
         Effect::Specular => drawn::specular(&table),
+        Effect::Glossy => drawn::glossy(&table),
         Effect::NormalMaps => drawn::normal_maps(&table),
         Effect::Emission => drawn::emission(&table),
         Effect::Transmission => drawn::transmission(&table),

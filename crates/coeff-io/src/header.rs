@@ -1,5 +1,6 @@
 //! The header chunk: every small record of a [`Prt`] in one bincode blob. The only file that knows bincode.
 
+use crate::gloss_header::SurfacesHeader;
 use crate::{Achieved, Camera, Error, MapsHeader, Material, Mesh, Plan, Prt, Settings, VolumeHeader, Wrap};
 use bincode::config::{self, Configuration, Fixint, Limit, LittleEndian};
 use serde::{Deserialize, Serialize};
@@ -35,6 +36,8 @@ pub struct Header {
     pub maps: Option<MapsHeader>,
     /// An irradiance volume, where there is one.
     pub volume: Option<VolumeHeader>,
+    /// Gloss, transfer textures and what is clustered.
+    pub surfaces: SurfacesHeader,
 }
 
 /// A texture without its pixels.
@@ -75,6 +78,7 @@ impl Header {
             textures: prt.textures.iter().map(texture).collect(),
             maps: prt.maps.as_ref().map(MapsHeader::of),
             volume: prt.volume.as_ref().map(VolumeHeader::of),
+            surfaces: SurfacesHeader::of(prt),
         }
     }
 

@@ -4,6 +4,7 @@
 //! error and the id of the spherical harmonics convention. `docs/format.md` describes the file byte by byte.
 
 mod array;
+mod arriving_light;
 mod bc1;
 mod bc6h;
 mod bc6h_mode;
@@ -15,6 +16,9 @@ mod eight_bits;
 mod error;
 pub mod export;
 mod export_textures;
+mod gloss;
+mod gloss_header;
+mod gloss_view;
 mod grid;
 mod header;
 pub mod import;
@@ -31,10 +35,13 @@ mod plan;
 mod read;
 mod record;
 mod replace;
+mod rows;
 mod sidecar;
 mod table;
 mod texels;
+mod transfer_textures;
 mod validate;
+mod validate_gloss;
 mod validate_maps;
 mod validate_volume;
 mod visitor;
@@ -43,9 +50,16 @@ mod volume_header;
 mod volume_lookup;
 mod write;
 
+pub use arriving_light::{ArrivingLight, DiffuseLight};
 pub use block::Blocks;
 pub use coding::{Coding, Curve, Effort, Encoded, Ranges, curves, linear_of_srgb, srgb_of_linear};
 pub use error::Error;
+pub use gloss::{Arriving, Bounced, Codebooks, Gloss, VertexGloss};
+pub use gloss_header::{
+    ArrivingHeader, CodebookHeader, GlossHeader, SurfacesHeader, TableHeader, TransferLevelHeader,
+    TransferTexturesHeader,
+};
+pub use gloss_view::{GlossView, GlossWay};
 pub use grid::Grid;
 pub use header::{Header, TextureHeader};
 pub use inspect::{Inspection, check, inspect};
@@ -55,10 +69,14 @@ pub use map_error::{MapError, normals};
 pub use map_header::{MapsHeader, SheetHeader, basis_id, basis_of};
 pub use model::{AlphaMode, Camera, Geometry, Material, Mesh, Prt, Texture, TextureSlot, Transfer, Wrap};
 pub use plan::{Effect, EffectCost, MeshPlan, Plan, PlanRow, Survey};
-pub use record::{Achieved, BandChoice, Bounces, Effects, MapRecord, Quality, Refine, RepairCounts, Sampler, Settings};
+pub use record::{
+    Achieved, BandChoice, Bounces, Effects, GlossRecord, MapRecord, Quality, Refine, RepairCounts, Sampler, Settings,
+};
 pub use replace::replace;
+pub use rows::{Codebook, Form, Table};
 pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};
 pub use texels::Container;
+pub use transfer_textures::{TransferLevel, TransferSheet, TransferTextures};
 pub use visitor::VisitorError;
 pub use volume::{Node, Volume};
 pub use volume_header::VolumeHeader;

@@ -123,14 +123,16 @@ impl Maps {
 }
 
 impl Prt {
-    /// Bands of light that transfer and light maps answer to, whichever has more; none where that is not supported.
+    /// Bands of light that transfer, light maps and gloss answer to, whichever has most; none where that is not supported.
     #[must_use]
     pub fn light_bands(&self) -> Option<Bands> {
         let of_maps = match self.maps.as_ref().map(|maps| &maps.light) {
             Some(MapLight::Relightable { bands }) => *bands,
             _ => 0,
         };
-        Bands::new(self.transfer.bands.max(of_maps))
+        // All that reach a product with visibility: 2 n - 1.
+        let of_gloss = self.gloss.as_ref().map_or(0, |gloss| (2 * gloss.bands).saturating_sub(1).min(Bands::MAX));
+        Bands::new(self.transfer.bands.max(of_maps).max(of_gloss))
     }
 }
 

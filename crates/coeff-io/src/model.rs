@@ -1,6 +1,6 @@
 //! The in-memory form of a `.prt` file: it mirrors the file.
 
-use crate::{Achieved, Maps, Plan, Settings, Volume};
+use crate::{Achieved, Codebooks, Gloss, Maps, Plan, Settings, Table, TransferTextures, Volume};
 use serde::{Deserialize, Serialize};
 
 /// A baked scene: all that a renderer needs, and how it came to be.
@@ -34,6 +34,14 @@ pub struct Prt {
     pub maps: Option<Maps>,
     /// An irradiance volume, where one was asked for.
     pub volume: Option<Volume>,
+    /// What surfaces that shine need, where the plan calls for it.
+    pub gloss: Option<Gloss>,
+    /// Transfer at texels instead of vertices, where that was chosen.
+    pub transfer_textures: Option<TransferTextures>,
+    /// What clustered tables share.
+    pub codebooks: Codebooks,
+    /// The transfer of the vertices as the file holds it where it is clustered; `transfer.values` are what it says.
+    pub compressed: Option<Table>,
 }
 
 /// A run of triangles with one material. The back of a two-sided mesh is a mesh of its own.

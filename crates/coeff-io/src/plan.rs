@@ -15,6 +15,8 @@ pub enum Effect {
     Masks,
     /// Reflections on materials that shine.
     Specular,
+    /// Which part of a reflection is blocked, and what the blocking surfaces send, by direction.
+    Glossy,
     /// Tangents for normal-mapped reflections.
     NormalMaps,
     /// All the bands that were asked for.
@@ -29,12 +31,13 @@ pub enum Effect {
 
 impl Effect {
     /// Every effect, in the order of a plan.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Visibility,
         Self::Interreflection,
         Self::Color,
         Self::Masks,
         Self::Specular,
+        Self::Glossy,
         Self::NormalMaps,
         Self::Bands,
         Self::Emission,
@@ -51,6 +54,7 @@ impl Effect {
             Self::Color => "color",
             Self::Masks => "masks",
             Self::Specular => "specular",
+            Self::Glossy => "glossy",
             Self::NormalMaps => "normal-maps",
             Self::Bands => "bands",
             Self::Emission => "emission",

@@ -1,8 +1,9 @@
 //! Bytes become a [`Prt`].
 
+use crate::gloss_header::{Joined, SurfaceBytes};
 use crate::table::{self, Chunk, Kind};
 use crate::volume_header::VolumeArrays;
-use crate::{Error, Geometry, Header, Prt, Texture, Transfer, array, validate};
+use crate::{Codebook, Error, Geometry, Header, Prt, Table, Texture, Transfer, array, validate};
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -70,6 +71,7 @@ struct Arrays {
     pictures: Vec<Vec<[u8; 4]>>,
     sheets: Vec<Vec<u8>>,
     volume: VolumeArrays,
+    surfaces: SurfaceBytes,
 }
 
 impl Arrays {
@@ -95,11 +97,14 @@ impl Arrays {
             Kind::VolumePositions => volume.positions = array::read(chunk, from)?,
             Kind::VolumeValidity => volume.validity = array::read(chunk, from)?,
             Kind::VolumeDistances => volume.distances = array::read(chunk, from)?,
+            Kind::Codebook => self.surfaces.books.push(array::read(chunk, from)?),
+            Kind::Places => self.surfaces.places.push(array::read(chunk, from)?),
+            Kind::Table => self.surfaces.tables.push(array::read(chunk, from)?),
         }
         Ok(())
     }
 
-    fn join(self, header: Header, chunks: &[Chunk]) -> Result<Prt, Error> {
+    fn join(mut self, header: Header, chunks: &[Chunk]) -> Result<Prt, Error> {
         if header.textures.len() != self.pictures.len() {
             let (stated, found) = (header.textures.len(), self.pictures.len());
             return Err(Error::invalid(
@@ -119,6 +124,15 @@ impl Arrays {
             Some(volume) => Some(volume.join(self.volume)),
             None => self.volume.check_absent(at).map(|()| None)?,
         };
+        let Joined { codebooks, compressed, gloss, transfer_textures } = header.surfaces.join(self.surfaces, at)?;
+        if let Some(table) = &compressed {
+            if !self.transfer.values.is_empty() {
+                return Err(Error::invalid(at, "the transfer of the vertices stands twice in the file"));
+            }
+            let length = chunks.last().map_or(0, Chunk::end);
+            self.transfer.values = decoded(table, codebooks.diffuse.as_ref(), length)
+                .ok_or_else(|| Error::invalid(at, "the clustered transfer is not what its sizes demand"))?;
+        }
         let pictures = header.textures.into_iter().zip(self.pictures);
         let texture = |(t, rgba): (crate::TextureHeader, _)| Texture {
             name: t.name,
@@ -142,6 +156,20 @@ impl Arrays {
             textures: pictures.map(texture).collect(),
             maps,
             volume,
+            gloss,
+            transfer_textures,
+            codebooks,
+            compressed,
         })
     }
+}
+
+/// Most bytes of decoded transfer per byte of its file: far more than a clustered file saves.
+const MOST_GROWTH: u64 = 64;
+
+/// A clustered transfer of a file of `length` bytes in numbers; none where it is unsound or too large for its file.
+fn decoded(table: &Table, book: Option<&Codebook>, length: u64) -> Option<Vec<f32>> {
+    let bytes = u64::from(table.rows).checked_mul(u64::from(table.columns))?.checked_mul(4)?;
+    let sound = book.is_none_or(|book| book.fault().is_none()) && table.fault(book).is_none();
+    (sound && bytes <= MOST_GROWTH.saturating_mul(length)).then(|| table.decode(book))
 }

@@ -111,6 +111,29 @@ pub struct Achieved {
     pub effects: Vec<EffectCost>,
     /// What light maps took and reached, where there are any.
     pub maps: Option<MapRecord>,
+    /// What gloss and transfer textures took and reached, where there are any.
+    pub gloss: Option<GlossRecord>,
+}
+
+/// What gloss and transfer textures took and reached.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
+pub struct GlossRecord {
+    /// Receivers of gloss at vertices.
+    pub vertices: u64,
+    /// Texels of the finest levels that a surface touches.
+    pub texels: u64,
+    /// Of these, those inside of bodies: they were filled from their own chart.
+    pub inside: u64,
+    /// Of those, the ones whose chart has nothing to fill them with: they took what the vertices around them take.
+    pub unfilled: u64,
+    /// Any-hit and closest-hit rays, which are also in those of the whole bake.
+    pub rays: [u64; 2],
+    /// Estimated error at texels, against that of an open point: median, 95th percentile, worst.
+    pub error: [f32; 3],
+    /// Relative error that compression added, root mean square over receivers: diffuse transfer, visibility, bounces.
+    pub compression: [f32; 3],
+    /// Bytes that the same would take as f32 without compression, and that it takes.
+    pub bytes: [u64; 2],
 }
 
 /// What light maps took and reached.

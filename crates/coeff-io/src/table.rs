@@ -10,7 +10,7 @@ use std::io::{self, Read, Write};
 pub const MAGIC: [u8; 8] = *b"\x89PRT\r\n\x1a\n";
 
 /// Version of the format, apart from the version of the program.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Every chunk begins at a multiple of so many bytes, so that a mapped file can be used without copying.
 pub const ALIGNMENT: u64 = 16;
@@ -60,11 +60,17 @@ pub enum Kind {
     VolumeValidity,
     /// `[probe][row][column][2]` f32.
     VolumeDistances,
+    /// The bytes of a `Codebook`.
+    Codebook,
+    /// `[texel]` u32: where the rows of a level of a transfer texture lie.
+    Places,
+    /// The bytes of a `Table`.
+    Table,
 }
 
 impl Kind {
     /// Every kind with its tag, in file order.
-    const TAGS: [(Self, [u8; 4]); 18] = [
+    const TAGS: [(Self, [u8; 4]); 21] = [
         (Self::Header, *b"HEAD"),
         (Self::Positions, *b"POSN"),
         (Self::Normals, *b"NORM"),
@@ -83,12 +89,15 @@ impl Kind {
         (Self::VolumePositions, *b"VPOS"),
         (Self::VolumeValidity, *b"VOKS"),
         (Self::VolumeDistances, *b"VDIS"),
+        (Self::Codebook, *b"BOOK"),
+        (Self::Places, *b"PLAC"),
+        (Self::Table, *b"ROWS"),
     ];
 
     /// Whether a file may hold several, counted by [`Chunk::index`].
     #[must_use]
     pub fn repeats(self) -> bool {
-        matches!(self, Self::Picture | Self::Sheet)
+        matches!(self, Self::Picture | Self::Sheet | Self::Codebook | Self::Places | Self::Table)
     }
 
     fn tag(self) -> [u8; 4] {
@@ -111,7 +120,7 @@ impl fmt::Display for Kind {
 pub struct Chunk {
     /// What it holds.
     pub kind: Kind,
-    /// Which picture or sheet; 0 for every other kind.
+    /// Which picture, sheet, codebook or table; 0 for kinds that do not repeat.
     pub index: u32,
     /// Where it begins, bytes from the start of the file.
     pub offset: u64,

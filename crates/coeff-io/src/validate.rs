@@ -30,6 +30,7 @@ pub(crate) fn validate(prt: &Prt, chunks: &[Chunk]) -> Result<(), Error> {
     if let Some(volume) = &prt.volume {
         check.volume(volume)?;
     }
+    check.surfaces(prt)?;
     check.header(!prt.cameras.is_empty(), || "there is no camera".into())?;
     for camera in &prt.cameras {
         check.camera(camera)?;
@@ -245,8 +246,8 @@ impl Check<'_> {
             format!("the worst receiver {} does not exist", achieved.worst_receiver)
         })?;
         let of_maps = achieved.maps.iter().flat_map(|maps| &maps.error);
-        let sound =
-            achieved.error.iter().chain(&achieved.bounce_changes).chain(of_maps).all(|v| v.is_finite() && *v >= 0.0);
+        let of_gloss = achieved.gloss.iter().flat_map(|gloss| gloss.error.iter().chain(&gloss.compression));
+        let sound = achieved.error.iter().chain(&achieved.bounce_changes).chain(of_maps).chain(of_gloss).all(is_amount);
         self.header(sound, || "an achieved error is no number".into())
     }
 

@@ -1,5 +1,6 @@
 //! A [`Prt`] becomes bytes.
 
+use crate::gloss_header::{levels, tables};
 use crate::table::{self, Kind};
 use crate::volume_header::nodes_to_words;
 use crate::{Error, Header, Prt, Volume, array, replace, validate};
@@ -70,7 +71,7 @@ fn arrays(prt: &Prt) -> impl Iterator<Item = (Kind, u32, Cow<'_, [u8]>)> {
         (Kind::Uv1, array::bytes(&geometry.uv1)),
         (Kind::Colors, array::bytes(&geometry.colors)),
         (Kind::Triangles, array::bytes(&geometry.triangles)),
-        (Kind::Transfer, array::bytes(&transfer.values)),
+        (Kind::Transfer, if prt.compressed.is_some() { Cow::Borrowed(&[]) } else { array::bytes(&transfer.values) }),
         (Kind::Albedo, array::bytes(&transfer.albedo)),
         (Kind::Openness, array::bytes(&transfer.openness)),
     ];
@@ -79,7 +80,16 @@ fn arrays(prt: &Prt) -> impl Iterator<Item = (Kind, u32, Cow<'_, [u8]>)> {
     let sheets = prt.maps.iter().flat_map(|maps| &maps.sheets).enumerate();
     let sheets = sheets.map(|(i, sheet)| (Kind::Sheet, i as u32, Cow::Borrowed(sheet.layers.bytes.as_slice())));
     let single = single.into_iter().map(|(kind, bytes)| (kind, 0, bytes));
-    single.chain(pictures).chain(sheets).chain(prt.volume.iter().flat_map(volume_arrays))
+    let base = single.chain(pictures).chain(sheets).chain(prt.volume.iter().flat_map(volume_arrays));
+    base.chain(surface_arrays(prt))
+}
+
+fn surface_arrays(prt: &Prt) -> impl Iterator<Item = (Kind, u32, Cow<'_, [u8]>)> {
+    let books = prt.codebooks.all().map(|book| (Kind::Codebook, Cow::Borrowed(book.bytes.as_slice())));
+    let places = levels(prt).map(|level| (Kind::Places, array::bytes(&level.places)));
+    let tables = tables(prt).map(|(table, _)| (Kind::Table, Cow::Borrowed(table.bytes.as_slice())));
+    let number = |(index, (kind, bytes))| (kind, index, bytes);
+    (0..).zip(books).map(number).chain((0..).zip(places).map(number)).chain((0..).zip(tables).map(number))
 }
 
 fn volume_arrays(volume: &Volume) -> [(Kind, u32, Cow<'_, [u8]>); 5] {

@@ -1,11 +1,11 @@
-//! Version 3 of the format, byte for byte: a committed file that every later program must read.
+//! Version 4 of the format, byte for byte: a committed file that every later program must read.
 
 mod sample;
 
 use coeff_io::{Error, Prt};
 
 const VERSION_1: &[u8] = include_bytes!("golden/version1.prt");
-const VERSION_3: &[u8] = include_bytes!("golden/version3.prt");
+const VERSION_4: &[u8] = include_bytes!("golden/version4.prt");
 
 /// Files of the first version lack what this program needs to know about a bake: they are refused with what to do.
 #[test]
@@ -14,64 +14,66 @@ fn version_1_is_refused_by_name() {
     let text = error.to_string();
     assert!(matches!(error, Error::Unsupported(_)), "{text}");
     assert!(
-        text.contains("version 1") && text.contains("version 3") && text.contains("bake the scene again"),
+        text.contains("version 1") && text.contains("version 4") && text.contains("bake the scene again"),
         "{text}"
     );
 }
 
-/// Files of the second version lack what is said of maps and volumes: they are refused alike.
+/// Files of the second and third version lack what is said of maps and volumes, and of gloss: they are refused alike.
 #[test]
-fn version_2_is_refused_by_name() {
-    let mut bytes = VERSION_3.to_vec();
-    bytes[8] = 2;
-    let text = Prt::from_bytes(&bytes).unwrap_err().to_string();
-    assert!(text.contains("version 2") && text.contains("version 3"), "{text}");
+fn versions_2_and_3_are_refused_by_name() {
+    for version in [2, 3] {
+        let mut bytes = VERSION_4.to_vec();
+        bytes[8] = version;
+        let text = Prt::from_bytes(&bytes).unwrap_err().to_string();
+        assert!(text.contains(&format!("version {version}")) && text.contains("version 4"), "{text}");
+    }
 }
 
 /// A change here is a change of the format: it needs a new version number, not new bytes.
 #[test]
-fn version_3_is_read() {
-    assert_eq!(Prt::from_bytes(VERSION_3).unwrap(), sample::sample());
+fn version_4_is_read() {
+    assert_eq!(Prt::from_bytes(VERSION_4).unwrap(), sample::sample());
 }
 
 #[test]
-fn version_3_is_written() {
+fn version_4_is_written() {
     let bytes = sample::sample().to_bytes().unwrap();
-    if bytes != VERSION_3 {
-        let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("version3.prt");
+    if bytes != VERSION_4 {
+        let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("version4.prt");
         std::fs::write(&path, &bytes).unwrap();
-        let first = bytes.iter().zip(VERSION_3).position(|(a, b)| a != b).unwrap_or(bytes.len().min(VERSION_3.len()));
+        let first = bytes.iter().zip(VERSION_4).position(|(a, b)| a != b).unwrap_or(bytes.len().min(VERSION_4.len()));
         panic!("the bytes differ from the golden ones from byte {first} on; they were left in {}", path.display());
     }
-    assert!(VERSION_3.len() < 6144);
+    assert!(VERSION_4.len() < 8192);
 }
 
 #[test]
-fn version_3_is_written_can_fail() {
+fn version_4_is_written_can_fail() {
     let mut prt = sample::sample();
     prt.settings.seed += 1;
-    assert_ne!(prt.to_bytes().unwrap(), VERSION_3);
+    assert_ne!(prt.to_bytes().unwrap(), VERSION_4);
 }
 
 /// The places that `docs/format.md` names, read without the crate.
 #[test]
-fn version_3_lies_where_the_description_says() {
-    let u32_at = |at: usize| u32::from_le_bytes(VERSION_3[at..at + 4].try_into().unwrap());
-    let u64_at = |at: usize| u64::from_le_bytes(VERSION_3[at..at + 8].try_into().unwrap());
-    assert_eq!(&VERSION_3[..8], b"\x89PRT\r\n\x1a\n");
-    assert_eq!((u32_at(8), u64_at(16)), (3, VERSION_3.len() as u64));
+fn version_4_lies_where_the_description_says() {
+    let u32_at = |at: usize| u32::from_le_bytes(VERSION_4[at..at + 4].try_into().unwrap());
+    let u64_at = |at: usize| u64::from_le_bytes(VERSION_4[at..at + 8].try_into().unwrap());
+    assert_eq!(&VERSION_4[..8], b"\x89PRT\r\n\x1a\n");
+    assert_eq!((u32_at(8), u64_at(16)), (4, VERSION_4.len() as u64));
     let rows = (0..u32_at(12) as usize).map(|i| 32 + 32 * i);
-    let find = |tag: &[u8]| rows.clone().find(|row| &VERSION_3[*row..*row + 4] == tag).unwrap();
+    let find = |tag: &[u8]| rows.clone().find(|row| &VERSION_4[*row..*row + 4] == tag).unwrap();
     let positions = u64_at(find(b"POSN") + 8) as usize;
     assert_eq!(f32::from_bits(u32_at(positions)), -1.0);
     assert_eq!(f32::from_bits(u32_at(positions + 12)), -0.625);
     let nodes = u64_at(find(b"VNOD") + 8) as usize;
     assert_eq!((u32_at(nodes), u32_at(nodes + 4), u32_at(nodes + 8), u32_at(nodes + 32)), (u32::MAX, 2, 0, 0));
     let second = find(b"MAPS") + 32;
-    assert_eq!((&VERSION_3[second..second + 4], u32_at(second + 4), u64_at(second + 16)), (&b"MAPS"[..], 1, 67));
+    assert_eq!((&VERSION_4[second..second + 4], u32_at(second + 4), u64_at(second + 16)), (&b"MAPS"[..], 1, 67));
     let codes = u64_at(second + 8) as usize;
-    assert_eq!((u32_at(codes), &VERSION_3[codes + 4..codes + 7]), (2, &[1, 0, 0][..]));
+    assert_eq!((u32_at(codes), &VERSION_4[codes + 4..codes + 7]), (2, &[1, 0, 0][..]));
     let header = u64_at(find(b"HEAD") + 8) as usize;
     assert_eq!(u64_at(header), "relume 0.1.0".len() as u64);
-    assert_eq!(&VERSION_3[header + 8..header + 20], b"relume 0.1.0");
+    assert_eq!(&VERSION_4[header + 8..header + 20], b"relume 0.1.0");
 }

@@ -35,6 +35,16 @@ pub(crate) fn sample() -> Prt {
                 clipped: 3,
                 negative: 4,
             }),
+            gloss: Some(GlossRecord {
+                vertices: 4,
+                texels: 3,
+                inside: 1,
+                unfilled: 0,
+                rays: [80_000_000_000, 6],
+                error: [0.001, 0.002, 0.003],
+                compression: [0.01, 0.02, 0.03],
+                bytes: [1000, 100],
+            }),
         },
         meshes: vec![mesh("floor", 0, [0, 4], [0, 2]), mesh("wall é", 1, [4, 3], [2, 1])],
         materials: vec![material("stone"), plain_material("glass")],
@@ -44,6 +54,10 @@ pub(crate) fn sample() -> Prt {
         textures: vec![texture("a.png", 3, 1), texture("b.png", 2, 2)],
         maps: Some(maps()),
         volume: Some(volume()),
+        gloss: Some(gloss()),
+        transfer_textures: Some(transfer_textures()),
+        codebooks: codebooks(),
+        compressed: None,
     }
 }
 
@@ -237,5 +251,49 @@ fn volume() -> Volume {
         distances: (0..8).flat_map(|i| [i as f32 * 0.5, (i * i) as f32 * 0.25 + 0.125]).collect(),
         resolution: 1,
         reach: 4.0,
+    }
+}
+
+fn some(count: usize, seed: usize) -> Vec<f32> {
+    (0..count).map(|i| ((i * 7 + seed * 3) % 11) as f32 / 8.0 - 0.5).collect()
+}
+
+/// Three channels of two bands; visibility of three bands; bounces of one band of light in one channel.
+fn codebooks() -> Codebooks {
+    Codebooks {
+        diffuse: Some(Codebook::new([12, 2, 1], &some(48, 1))),
+        visibility: Some(Codebook::new([9, 1, 2], &some(27, 2))),
+        bounce: Some(Codebook::new([9, 2, 0], &some(18, 3))),
+    }
+}
+
+fn gloss() -> Gloss {
+    let bounce = Table::clustered(codebooks().bounce.as_ref().unwrap(), &[1, 0, 1], &[]);
+    Gloss {
+        bands: 3,
+        bounced: Some(Bounced::Relightable { bands: 1, channels: 1 }),
+        vertices: Some(VertexGloss {
+            first_row: vec![None, Some(0)],
+            arriving: Arriving { visibility: Table::half(9, &some(27, 4)), bounces: vec![bounce] },
+        }),
+    }
+}
+
+fn transfer_textures() -> TransferTextures {
+    let books = codebooks();
+    let level = |width, height, places: Vec<u32>| {
+        let n = places.len();
+        let arriving = Arriving {
+            visibility: Table::clustered(books.visibility.as_ref().unwrap(), &vec![0; n], &some(2 * n, 5)),
+            bounces: vec![Table::exact(9, &some(9 * n, 6))],
+        };
+        let diffuse = Table::clustered(books.diffuse.as_ref().unwrap(), &vec![1; n], &some(n, 7));
+        TransferLevel { width, height, places, diffuse, arriving: Some(arriving) }
+    };
+    TransferTextures {
+        channels: 3,
+        bent: true,
+        sheets: vec![TransferSheet { levels: vec![level(3, 2, vec![0, 2, 4]), level(2, 1, vec![1])] }],
+        sheet_of_mesh: vec![Some(0), None],
     }
 }

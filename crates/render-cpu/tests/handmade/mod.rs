@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 use coeff_io::{
-    Achieved, AlphaMode, BandChoice, Bounces, Camera, Effects, Geometry, Material, Mesh, Plan, Prt, Quality, Refine,
-    Sampler, Settings, Transfer,
+    Achieved, AlphaMode, BandChoice, Bounces, Camera, Codebooks, Effects, Geometry, Material, Mesh, Plan, Prt, Quality,
+    Refine, Sampler, Settings, Transfer,
 };
 use glam::Vec3;
 
@@ -71,6 +71,10 @@ pub(crate) fn empty() -> Prt {
         textures: Vec::new(),
         maps: None,
         volume: None,
+        gloss: None,
+        transfer_textures: None,
+        codebooks: Codebooks::default(),
+        compressed: None,
     }
 }
 

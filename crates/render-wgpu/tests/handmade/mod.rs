@@ -4,8 +4,8 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 use coeff_io::{
-    Achieved, AlphaMode, BandChoice, Bounces, Camera, Effects, Layers, MapLight, Maps, Material, Mesh, Plan, Prt,
-    Quality, Refine, Sampler, Settings, Sheet, Texture, TextureSlot, Transfer, Wrap,
+    Achieved, AlphaMode, BandChoice, Bounces, Camera, Codebooks, Effects, Layers, MapLight, Maps, Material, Mesh, Plan,
+    Prt, Quality, Refine, Sampler, Settings, Sheet, Texture, TextureSlot, Transfer, Wrap,
 };
 use glam::{Quat, Vec3};
 use probe_io::{Environment, Lamp};
@@ -87,6 +87,10 @@ fn empty(channels: u32) -> Prt {
         textures: Vec::new(),
         maps: None,
         volume: None,
+        gloss: None,
+        transfer_textures: None,
+        codebooks: Codebooks::default(),
+        compressed: None,
     }
 }
 
