@@ -6,6 +6,7 @@
 use crate::directions::DirectionBank;
 use crate::field::Field;
 use crate::gather::{Gatherer, Worker};
+use crate::mirror::{MOST_BANDS, Mirrors};
 use crate::receivers::{Receiver, Receivers};
 use crate::senders::resolve;
 use crate::world::World;
@@ -27,14 +28,27 @@ pub(crate) enum Sent<'a> {
 impl<'a> Sent<'a> {
     /// The radiance of every receiver under a light.
     pub(crate) fn under(transfer: &Field, receivers: usize, light: &[[f32; 3]]) -> Self {
-        let one = |r: u32| {
-            std::array::from_fn(|c| {
-                let row = transfer.channel(r, c.min(transfer.channels - 1));
-                row.iter().zip(light).map(|(t, l)| t * l[c]).sum()
-            })
-        };
-        Self::Radiance((0..receivers as u32).into_par_iter().map(one).collect())
+        Self::Radiance(radiance(transfer, receivers, light))
     }
+}
+
+/// The radiance of every receiver for albedo 1 under a light, RGB.
+pub(crate) fn radiance(transfer: &Field, receivers: usize, light: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let one = |r: u32| {
+        std::array::from_fn(|c| {
+            let row = transfer.channel(r, c.min(transfer.channels - 1));
+            row.iter().zip(light).map(|(t, l)| t * l[c]).sum()
+        })
+    };
+    (0..receivers as u32).into_par_iter().map(one).collect()
+}
+
+/// Surfaces that shine, and the direct light that tells what other surfaces send them.
+#[derive(Clone, Copy)]
+pub(crate) struct Shine<'a> {
+    pub(crate) mirrors: &'a Mirrors,
+    /// Direct transfer of every receiver.
+    pub(crate) direct: &'a Field,
 }
 
 /// How open directions become coefficients.
@@ -53,6 +67,10 @@ pub(crate) struct Arrivals<'a> {
     direct: Direct,
     functions: Bands,
     shape: Shape,
+    shine: Option<Shine<'a>>,
+    light: Option<&'a [[f32; 3]]>,
+    /// Whether visibility and what surfaces send are told apart.
+    pub(crate) apart: bool,
 }
 
 /// Shape of what arrives: `[function][depth][channel]`.
@@ -84,6 +102,73 @@ pub(crate) struct Arrival {
     pub(crate) visibility_rays: u64,
     /// Closest-hit rays traced.
     pub(crate) bounce_rays: u64,
+    /// Coefficients of visibility over the sphere, and what surfaces send alone, where they are told apart; else empty.
+    pub(crate) visibility: Vec<f32>,
+    pub(crate) bounced: Vec<f32>,
+    /// The surfaces that block, where they are told apart.
+    pub(crate) found: Found,
+}
+
+/// The surfaces that block the directions of a point.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    /// Direction, what it meets, and its share of the domain.
+    hits: Vec<(Vec3, Hit, f32)>,
+    /// Mean of every function over the directions that are not open.
+    closed: Vec<f32>,
+    /// Of the domain.
+    angle: f32,
+}
+
+impl Found {
+    /// The coefficients `[function][number]` over directions of what surfaces send; `send` writes what one does.
+    ///
+    /// Few directions miss the mean of every function over the directions that are not open, so their mean goes with what they miss. A
+    /// surrounding that sends the same everywhere is exact.
+    pub(crate) fn gather(
+        &self,
+        functions: Bands,
+        numbers: usize,
+        send: &mut dyn FnMut(&Hit, Vec3, &mut [f32]) -> bool,
+    ) -> Vec<f32> {
+        let mut values = vec![0.0; functions.coefficients() * numbers];
+        if !self.hits.is_empty() {
+            add_sent(&self.hits, &self.closed, (functions, numbers), send, &mut values);
+            values.iter_mut().for_each(|value| *value *= self.angle);
+        }
+        values
+    }
+}
+
+/// Adds what surfaces send along the directions that meet them, by their shares of the domain: [`Found::gather`].
+fn add_sent(
+    found: &[(Vec3, Hit, f32)],
+    closed: &[f32],
+    (bands, numbers): (Bands, usize),
+    send: &mut dyn FnMut(&Hit, Vec3, &mut [f32]) -> bool,
+    values: &mut [f32],
+) {
+    let mut missed = closed.to_vec();
+    let (mut mean, mut total) = (vec![0.0f32; numbers], 0.0f32);
+    let (mut harmonics, mut sent) = (vec![0.0; bands.coefficients()], vec![0.0f32; numbers]);
+    for (direction, hit, weight) in found {
+        sh_math::evaluate(bands, *direction, &mut harmonics);
+        missed.iter_mut().zip(&harmonics).for_each(|(rest, y)| *rest -= weight * y);
+        total += weight;
+        if !send(hit, *direction, &mut sent) {
+            continue;
+        }
+        mean.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += weight * s);
+        for (out, harmonic) in values.chunks_exact_mut(numbers).zip(&harmonics) {
+            let factor = weight * harmonic;
+            out.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += factor * s);
+        }
+    }
+    if total > 0.0 {
+        for (out, rest) in values.chunks_exact_mut(numbers).zip(missed) {
+            out.iter_mut().zip(&mean).for_each(|(sum, m)| *sum += rest / total * m);
+        }
+    }
 }
 
 /// What is needed beside the bank.
@@ -102,6 +187,8 @@ pub(crate) struct Setting<'a> {
     pub(crate) light_bands: Bands,
     /// Bands over directions.
     pub(crate) functions: Bands,
+    /// Surfaces that shine, where what they mirror counts.
+    pub(crate) shine: Option<Shine<'a>>,
 }
 
 impl Setting<'_> {
@@ -134,9 +221,20 @@ impl<'a> Arrivals<'a> {
             hits: setting.hits,
             permanent: u32::MAX,
             worth: f32::INFINITY,
+            mirrors: None,
         };
         let shape = Shape { functions: setting.functions.coefficients(), depth, channels };
-        Self { gatherer, receivers: setting.receivers, sent: setting.sent, direct, functions: setting.functions, shape }
+        Self {
+            gatherer,
+            receivers: setting.receivers,
+            sent: setting.sent,
+            direct,
+            functions: setting.functions,
+            shape,
+            shine: setting.shine,
+            light: setting.light,
+            apart: false,
+        }
     }
 
     pub(crate) fn shape(&self) -> Shape {
@@ -155,7 +253,11 @@ impl<'a> Arrivals<'a> {
             error: direct.error,
             visibility_rays: direct.visibility_rays,
             bounce_rays: 0,
+            visibility: Vec::new(),
+            bounced: Vec::new(),
+            found: Found::default(),
         };
+        let open = self.apart.then(|| arrival.values.clone());
         if direct.openness < 1.0 {
             let blockers = self.gatherer.blockers(receiver, index, step, direct.openness, worker);
             arrival.inside_share = blockers.inside_share;
@@ -163,10 +265,20 @@ impl<'a> Arrivals<'a> {
             if self.gatherer.hits && !blockers.found.is_empty() {
                 let open = self.gatherer.bank.domain.open_about(self.functions, receiver.normal);
                 let closed: Vec<f32> = open.iter().zip(&direct.transfer).map(|(all, open)| all - open).collect();
-                self.add_sent(&blockers.found, &closed, &mut arrival.values);
+                let numbers = self.shape.depth * self.shape.channels;
+                let mut send = |hit: &Hit, direction, out: &mut [f32]| self.sent(hit, direction, out);
+                add_sent(&blockers.found, &closed, (self.functions, numbers), &mut send, &mut arrival.values);
+                if self.apart {
+                    let angle = self.gatherer.bank.domain.solid_angle() as f32;
+                    arrival.found = Found { hits: blockers.found, closed, angle };
+                }
             }
         }
         let angle = self.gatherer.bank.domain.solid_angle() as f32;
+        if let Some(open) = open {
+            arrival.visibility = direct.transfer.iter().map(|v| v * angle).collect();
+            arrival.bounced = arrival.values.iter().zip(open).map(|(all, open)| angle * (all - open)).collect();
+        }
         arrival.values.iter_mut().for_each(|value| *value *= angle);
         arrival
     }
@@ -194,60 +306,82 @@ impl<'a> Arrivals<'a> {
         }
     }
 
-    /// Adds what surfaces send along the directions that meet them, by their shares of the domain.
-    ///
-    /// `closed` is the mean of every function over the directions that are not open: few directions miss it, so their mean goes with what
-    /// they miss. A surrounding that sends the same everywhere is exact.
-    fn add_sent(&self, found: &[(Vec3, Hit, f32)], closed: &[f32], values: &mut [f32]) {
-        let Shape { functions, depth, channels } = self.shape;
-        let mut missed = closed.to_vec();
-        let (mut mean, mut total) = (vec![0.0f32; depth * channels], 0.0f32);
-        let (mut harmonics, mut sent) = (vec![0.0; functions], vec![0.0f32; depth * channels]);
-        for (direction, hit, weight) in found {
-            sh_math::evaluate(self.functions, *direction, &mut harmonics);
-            missed.iter_mut().zip(&harmonics).for_each(|(rest, y)| *rest -= weight * y);
-            total += weight;
-            if !self.sent(hit, &mut sent) {
-                continue;
-            }
-            mean.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += weight * s);
-            for (out, harmonic) in values.chunks_exact_mut(depth * channels).zip(&harmonics) {
-                let factor = weight * harmonic;
-                out.iter_mut().zip(&sent).for_each(|(sum, s)| *sum += factor * s);
-            }
-        }
-        if total > 0.0 {
-            for (out, rest) in values.chunks_exact_mut(depth * channels).zip(missed) {
-                out.iter_mut().zip(&mean).for_each(|(sum, m)| *sum += rest / total * m);
-            }
-        }
-    }
-
-    /// Writes what a surface sends at a point, `[depth][channel]`; whether it sends anything.
-    fn sent(&self, hit: &Hit, out: &mut [f32]) -> bool {
+    /// Writes what a surface sends back along a ray, `[depth][channel]`; whether it sends anything.
+    fn sent(&self, hit: &Hit, direction: Vec3, out: &mut [f32]) -> bool {
+        out.fill(0.0);
         let world = self.gatherer.world;
         let albedo = world.albedo(hit.triangle, hit.u, hit.v).to_array();
-        if albedo == [0.0; 3] {
-            return false;
+        let scatters = albedo != [0.0; 3];
+        if scatters {
+            self.add_scattered(hit, albedo, None, out);
         }
-        out.fill(0.0);
-        let corners = world.corners[hit.triangle as usize].map(|c| resolve(c, !hit.front, self.receivers));
-        let channels = self.shape.channels;
-        for (corner, share) in corners.into_iter().zip([1.0 - hit.u - hit.v, hit.u, hit.v]) {
-            for (channel, albedo) in albedo.iter().enumerate().take(channels) {
-                let factor = share * albedo;
-                match &self.sent {
-                    Sent::Transfer(field) => {
-                        let row = field.channel(corner, channel);
-                        let out = out.iter_mut().skip(channel).step_by(channels);
-                        out.zip(row).for_each(|(sum, t)| *sum += factor * t);
-                    }
-                    Sent::Radiance(radiance) => out[channel] += factor * radiance[corner as usize][channel],
+        let mirrors = self.shine.is_some_and(|shine| self.add_mirrored(shine, hit, direction, out));
+        scatters || mirrors
+    }
+
+    /// Adds what surfaces that shine mirror: of light that falls on them straight by direction, of what other surfaces send the mean.
+    fn add_mirrored(&self, shine: Shine<'_>, hit: &Hit, direction: Vec3, out: &mut [f32]) -> bool {
+        let mirrors = shine.mirrors;
+        let mut lobe = [0.0; (MOST_BANDS * MOST_BANDS) as usize];
+        let lobe = &mut lobe[..mirrors.bands.coefficients()];
+        let Some(met) = mirrors.meet(self.gatherer.world, hit, direction, lobe) else { return false };
+        let mut row = vec![0.0; mirrors.light().coefficients()];
+        let glance = mirrors.glance(&met, lobe, &mut row);
+        let (tint, channels) = (glance.tint.to_array(), self.shape.channels);
+        match self.light {
+            None => {
+                for (out, x) in out.chunks_exact_mut(channels).zip(&row) {
+                    out.iter_mut().zip(tint).for_each(|(sum, tint)| *sum += tint * x);
+                }
+            }
+            Some(light) => {
+                for (c, (sum, tint)) in out.iter_mut().zip(tint).enumerate() {
+                    *sum += tint * row.iter().zip(light).map(|(x, l)| x * l[c]).sum::<f32>();
                 }
             }
         }
+        if glance.closed > 0.0 {
+            self.add_scattered(hit, (glance.tint * glance.closed).to_array(), Some(shine.direct), out);
+        }
         true
     }
+
+    /// Adds what the corners of a triangle send, times a factor; without the direct light where that is given.
+    fn add_scattered(&self, hit: &Hit, factors: [f32; 3], without: Option<&Field>, out: &mut [f32]) {
+        let world = self.gatherer.world;
+        let corners = world.corners[hit.triangle as usize].map(|c| resolve(c, !hit.front, self.receivers));
+        let channels = self.shape.channels;
+        for (corner, share) in corners.into_iter().zip([1.0 - hit.u - hit.v, hit.u, hit.v]) {
+            for (channel, factor) in factors.iter().enumerate().take(channels) {
+                let factor = share * factor;
+                match &self.sent {
+                    Sent::Transfer(field) => {
+                        let mut add = |row: &[f32], factor: f32| {
+                            let out = out.iter_mut().skip(channel).step_by(channels);
+                            out.zip(row).for_each(|(sum, t)| *sum += factor * t);
+                        };
+                        add(field.channel(corner, channel), factor);
+                        if let Some(direct) = without {
+                            add(direct.channel(corner, channel), -factor);
+                        }
+                    }
+                    Sent::Radiance(radiance) => {
+                        let direct = match (without, self.light) {
+                            (Some(direct), Some(light)) => {
+                                dot(direct.channel(corner, channel.min(direct.channels - 1)), light, channel)
+                            }
+                            _ => 0.0,
+                        };
+                        out[channel] += factor * (radiance[corner as usize][channel] - direct);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn dot(row: &[f32], light: &[[f32; 3]], channel: usize) -> f32 {
+    row.iter().zip(light).map(|(t, l)| t * l[channel]).sum()
 }
 
 /// The products of one light with every coefficient of visibility.

@@ -1,12 +1,14 @@
 //! The bake: plan, first pass, backs, repair, bounces, file.
 
 use crate::account::account;
+use crate::arrival::radiance;
 use crate::bundle::{Baked, bundle};
 use crate::directions::DirectionBank;
-use crate::extras::{Done, Extras};
+use crate::extras::{Done, Extras, FixedLight};
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer};
 use crate::hit::{NearPoint, PackedHit, Source};
+use crate::mirror::Mirrors;
 use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::{Progress, Stage};
@@ -91,6 +93,12 @@ pub(crate) fn bake_then<T>(
     // Where nothing is traced no directions are needed: the smallest set stands in.
     let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };
     let bank = DirectionBank::new(bands, &Settings { quality, ..settings.clone() });
+    let monitor = Monitor::new(progress);
+    let glossy = simulates(&plan, Effect::Glossy);
+    let mirrors = match glossy {
+        true => Some(Mirrors::find(&world, &receivers, settings, bands, &monitor)?),
+        false => None,
+    };
     let gatherer = Gatherer {
         world: &world,
         bank: &bank,
@@ -100,8 +108,11 @@ pub(crate) fn bake_then<T>(
         hits: simulates(&plan, Effect::Interreflection),
         permanent: receivers.permanent as u32,
         worth: NEAR_WORTH * tolerance(settings.quality),
+        mirrors: mirrors.as_ref(),
     };
-    let (mut prt, more) = Run::new(gatherer, receivers, settings, plan, progress)?.finish(scene, extras, then)?;
+    let mut run = Run::new(gatherer, receivers, settings, plan, monitor)?;
+    run.light = extras.light.as_ref().filter(|_| glossy);
+    let (mut prt, more) = run.finish(scene, extras, then)?;
     prt.achieved.effects = account(scene, &prt, traced.len() as u64);
     Ok((prt, more))
 }
@@ -132,6 +143,13 @@ struct Run<'a> {
     achieved: Achieved,
     /// Bytes left for what receivers see; where they run out, each bounce finds it again.
     room: u64,
+    /// Where surfaces shine: the direct transfer, and what they mirror of light that falls on them straight.
+    direct: Option<Field>,
+    glints: Option<Field>,
+    /// The light that goes into gloss, where one is fixed.
+    light: Option<&'a FixedLight>,
+    /// Under it, per bounce from none on: the radiance of every receiver for albedo 1, RGB.
+    radiance: Vec<Vec<[f32; 3]>>,
 }
 
 impl<'a> Run<'a> {
@@ -140,7 +158,7 @@ impl<'a> Run<'a> {
         receivers: Receivers,
         settings: &'a Settings,
         plan: Plan,
-        progress: ProgressFn<'a>,
+        monitor: Monitor<'a>,
     ) -> Result<Self, Error> {
         let (n, coefficients, channels) = (receivers.list.len(), gatherer.bands.coefficients(), plan.channels as usize);
         let mut run = Self {
@@ -149,7 +167,11 @@ impl<'a> Run<'a> {
             errors: vec![0.0; n],
             achieved: Achieved::default(),
             room: 0,
-            monitor: Monitor::new(progress),
+            monitor,
+            direct: None,
+            glints: None,
+            light: None,
+            radiance: Vec::new(),
             gatherer,
             receivers,
             settings,
@@ -174,12 +196,18 @@ impl<'a> Run<'a> {
         self.achieved.repairs = RepairCounts { inside: self.achieved.repairs.inside, ..repair.counts };
         repair.apply(&mut self.last);
         let mut transfer = self.last.clone();
+        self.direct = self.gatherer.mirrors.map(|_| self.last.clone());
         if self.gatherer.hits {
             chunks.extend(self.add_helpers()?);
             // The helpers made the fields larger.
             let mut room = self.settings.memory.saturating_sub(self.field_bytes());
             chunks.iter_mut().for_each(|chunk| chunk.keep_within(&mut room));
             transfer.grow(self.receivers.list.len());
+            if let Some(direct) = &mut self.direct {
+                // Backs and near points joined in.
+                direct.clone_from(&self.last);
+            }
+            self.note_radiance();
             self.bounce(&chunks, &repair, &mut transfer)?;
         }
         // What follows needs the memory.
@@ -216,6 +244,8 @@ impl<'a> Run<'a> {
             settings: self.settings,
             plan: &self.plan,
             light: extras.light.as_ref(),
+            direct: self.direct.as_ref(),
+            radiance: &self.radiance,
             monitor: &self.monitor,
         }
     }
@@ -238,7 +268,8 @@ impl<'a> Run<'a> {
 
     /// Bytes that the fields take: where there are bounces the one before, the next, and the sum.
     fn field_bytes(&self) -> u64 {
-        let fields = if self.gatherer.hits { 3 } else { 1 };
+        let gloss = if self.gatherer.mirrors.is_some() { 2 } else { 0 };
+        let fields = if self.gatherer.hits { 3 } else { 1 } + gloss;
         fields * Field::bytes(self.receivers.list.len(), self.last.coefficients, self.last.channels)
     }
 
@@ -254,6 +285,7 @@ impl<'a> Run<'a> {
     fn first_pass(&mut self, ids: Vec<u32>, stage: Stage) -> Result<Vec<Chunk>, Error> {
         let (last, findings, errors) = (&mut self.last, &mut self.findings, &mut self.errors);
         let achieved = &mut self.achieved;
+        let glints = &mut self.glints;
         let mut wanted = Wanted { worth: tolerance(self.settings.quality), ..Wanted::default() };
         let mut sink = |id: u32, seen: &Gathered| {
             last.set_all(id, &seen.transfer);
@@ -262,6 +294,12 @@ impl<'a> Run<'a> {
             errors[id as usize] = seen.error;
             achieved.visibility_rays += seen.visibility_rays;
             achieved.bounce_rays += seen.bounce_rays;
+            if !seen.glint.is_empty() {
+                let (coefficients, channels) = (last.coefficients, last.channels);
+                let glints = glints.get_or_insert_with(|| Field::zeros(0, coefficients, channels));
+                glints.grow((id as usize + 1).max(glints.len()));
+                glints.set(id, &seen.glint);
+            }
             if !finding.is_inside() {
                 wanted.note(id, seen);
             }
@@ -299,14 +337,18 @@ impl<'a> Run<'a> {
         };
         let mut before = 1.0;
         for n in 1..=limit {
-            let stage = Stage::Bounce(n);
-            let mut next = bounce_pass(&self.gatherer, &self.receivers, chunks, &self.last, stage, &self.monitor)?;
+            let mut next = bounce_pass(&self.gatherer, &self.receivers, chunks, &self.last, n, &self.monitor)?;
+            if let Some(mut glints) = self.glints.take_if(|_| n == 1) {
+                glints.grow(self.receivers.list.len());
+                next.add(&glints);
+            }
             repair.apply(&mut next);
             transfer.add(&next);
             let change = self.largest_norm(&next);
             self.achieved.bounces = n;
             self.achieved.bounce_changes.push(change as f32);
             self.last = next;
+            self.note_radiance();
             if self.settings.bounces == Bounces::Auto
                 && still_to_come(change, before) <= f64::from(tolerance(self.settings.quality))
             {
@@ -315,6 +357,14 @@ impl<'a> Run<'a> {
             before = change;
         }
         Ok(())
+    }
+
+    /// Keeps the radiance of the last bounce under the light that goes into gloss.
+    fn note_radiance(&mut self) {
+        if let Some(light) = self.light {
+            let light = &light.coefficients[..self.last.coefficients];
+            self.radiance.push(radiance(&self.last, self.receivers.list.len(), light));
+        }
     }
 
     /// Largest norm of a receiver's row that goes into the file, against an open receiver's.

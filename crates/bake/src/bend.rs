@@ -149,6 +149,7 @@ impl<'a> Bends<'a> {
             hits: false,
             permanent: 0,
             worth: 0.0,
+            mirrors: None,
         };
         let total = receivers.len() as u64;
         monitor.begin(Stage::Refinement, total);

@@ -1,6 +1,6 @@
 //! What is baked beside the transfer of the vertices, from the same light between surfaces.
 
-use crate::arrival::{Arrivals, Sent, Setting, Shape};
+use crate::arrival::{Arrivals, Sent, Setting, Shape, Shine};
 use crate::directions::DirectionBank;
 use crate::domain::{Domain, Judge};
 use crate::field::Field;
@@ -69,6 +69,10 @@ pub(crate) struct Done<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) plan: &'a Plan,
     pub(crate) light: Option<&'a FixedLight>,
+    /// Where surfaces shine: the direct transfer.
+    pub(crate) direct: Option<&'a Field>,
+    /// Where surfaces shine under a fixed light: the radiance of every receiver for albedo 1, per bounce from none on.
+    pub(crate) radiance: &'a [Vec<[f32; 3]>],
     pub(crate) monitor: &'a Monitor<'a>,
 }
 
@@ -112,8 +116,15 @@ impl Done<'_> {
             light,
             light_bands: self.light_bands(),
             functions,
+            shine: self.shine(),
         };
         Arrivals::new(bank, setting)
+    }
+
+    /// Surfaces that shine, where what they mirror counts.
+    pub(crate) fn shine(&self) -> Option<Shine<'_>> {
+        let (mirrors, direct) = (self.gatherer.mirrors?, self.direct?);
+        (self.settings.bounces != Bounces::Fixed(0)).then_some(Shine { mirrors, direct })
     }
 
     /// Writes what the vertices around a texel take, as irradiance / pi that is the same for every normal, by `[function][depth][channel]`.

@@ -55,6 +55,8 @@ pub(crate) struct Facts {
     pub(crate) masked: Named,
     pub(crate) holed: Named,
     pub(crate) shiny: Named,
+    /// Those that mirror light in their colour.
+    pub(crate) tinted: Named,
     /// Those with normal maps that bend something: all that shine, and with directional light maps all.
     pub(crate) bumpy: Named,
     /// Whether normal maps bend diffuse light.
@@ -101,6 +103,7 @@ impl Facts {
             masked: named(&|m| m.masked),
             holed: named(&|m| m.holes > 0.0),
             shiny: named(&|m| m.shines),
+            tinted: named(&|m| m.tinted),
             bumpy: named(&|m| m.bumpy && (m.shines || directional)),
             directional,
             volume: false,

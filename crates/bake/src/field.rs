@@ -54,6 +54,19 @@ impl Field {
         }
     }
 
+    /// Number of receivers.
+    pub(crate) fn len(&self) -> usize {
+        self.values.len() / self.row_len().max(1)
+    }
+
+    /// Sets a receiver to `[channel][coefficient]`, of which further channels are left out.
+    pub(crate) fn set(&mut self, receiver: u32, values: &[f32]) {
+        let (stride, coefficients) = (self.stride, self.coefficients);
+        for (channel, own) in self.row_mut(receiver).chunks_exact_mut(stride).zip(values.chunks_exact(coefficients)) {
+            channel[..coefficients].copy_from_slice(own);
+        }
+    }
+
     /// Adds another field of the same shape.
     pub(crate) fn add(&mut self, other: &Self) {
         for (a, b) in self.values.iter_mut().zip(&other.values) {

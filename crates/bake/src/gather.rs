@@ -4,6 +4,7 @@ use crate::directions::{DirectionBank, DirectionSet, Step};
 use crate::domain::Domain;
 use crate::foresight::Choice;
 use crate::hit::{NearPoint, PackedHit, near_points, packed};
+use crate::mirror::{MOST_BANDS, Mirrors};
 use crate::receivers::Receiver;
 use crate::world::World;
 use coeff_io::Quality;
@@ -27,6 +28,8 @@ pub(crate) struct Gatherer<'a> {
     pub(crate) permanent: u32,
     /// Share of a receiver's light from where a near surface is worth a receiver of its own.
     pub(crate) worth: f32,
+    /// Surfaces that shine, where what they mirror counts.
+    pub(crate) mirrors: Option<&'a Mirrors>,
 }
 
 /// What a receiver sees.
@@ -48,6 +51,10 @@ pub(crate) struct Gathered {
     pub(crate) hits: Vec<PackedHit>,
     /// Points of surfaces so near that their vertices cannot speak for them; some hits refer to these.
     pub(crate) near: Vec<NearPoint>,
+    /// What surfaces that shine send of light that falls on them straight, `[channel of 3][coefficient]`; empty where there are none.
+    pub(crate) glint: Vec<f32>,
+    /// The same surfaces, with the share that they send on of light from other surfaces.
+    pub(crate) late: Vec<PackedHit>,
 }
 
 /// Buffers that a thread keeps between receivers. Contents never change results.
@@ -300,13 +307,37 @@ impl Gatherer<'_> {
         if !self.hits || blockers.found.is_empty() {
             return;
         }
-        let weighed = blockers.found.into_iter();
-        let weighed: Vec<(Hit, Vec3)> =
-            weighed.map(|(_, hit, weight)| (hit, self.world.albedo(hit.triangle, hit.u, hit.v) * weight)).collect();
+        let found = blockers.found;
+        let weighed: Vec<(Hit, Vec3)> = found
+            .iter()
+            .map(|(_, hit, weight)| (*hit, self.world.albedo(hit.triangle, hit.u, hit.v) * *weight))
+            .collect();
         if index < self.permanent && !crate::repair::is_inside(out.openness, out.inside_share) {
             out.near = near_points(self.world, &weighed, self.worth);
         }
         out.hits.extend(weighed.iter().map(|(hit, reflected)| packed(hit, *reflected, &out.near)));
+        if let Some(mirrors) = self.mirrors {
+            self.add_mirrored(mirrors, &found, out);
+        }
+    }
+
+    /// Adds what surfaces that shine mirror towards the receiver.
+    fn add_mirrored(&self, mirrors: &Mirrors, found: &[(Vec3, Hit, f32)], out: &mut Gathered) {
+        let n = self.bands.coefficients();
+        let mut lobe = [0.0; (MOST_BANDS * MOST_BANDS) as usize];
+        let lobe = &mut lobe[..mirrors.bands.coefficients()];
+        let mut row = vec![0.0f32; n];
+        for (direction, hit, weight) in found {
+            let Some(met) = mirrors.meet(self.world, hit, *direction, lobe) else { continue };
+            let glance = mirrors.glance(&met, lobe, &mut row);
+            out.glint.resize(3 * n, 0.0);
+            for (sums, tint) in out.glint.chunks_exact_mut(n).zip((glance.tint * *weight).to_array()) {
+                sums.iter_mut().zip(&row).for_each(|(sum, x)| *sum += tint * x);
+            }
+            if glance.closed > 0.0 {
+                out.late.push(packed(hit, glance.tint * (glance.closed * weight), &out.near));
+            }
+        }
     }
 }
 

@@ -26,6 +26,7 @@ mod gather;
 mod hit;
 mod maps;
 mod material;
+mod mirror;
 mod passes;
 mod plan;
 mod price;

@@ -7,7 +7,7 @@ mod check;
 mod directional;
 mod frame;
 mod join;
-mod plate;
+pub(crate) mod plate;
 mod stitch;
 
 use crate::arrival::{Arrival, Arrivals, Shape, to_irradiance};
@@ -33,6 +33,7 @@ const CHUNK: usize = 64;
 
 pub(crate) use check::check;
 pub use directional::{Directional, DirectionalTexel, directional};
+pub(crate) use join::stitch_all;
 
 /// What maps are wanted.
 #[derive(Debug, Clone, PartialEq)]
@@ -146,7 +147,8 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         sheet.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(index));
     }
     if settings.stitch && settings.dilation > 0 {
-        join::stitch_all(done, &sheet_of_mesh, &mut sheets);
+        let mut plates: Vec<&mut Plate> = sheets.iter_mut().map(|sheet| &mut sheet.plate).collect();
+        stitch_all(done, &sheet_of_mesh, &mut plates);
     }
     let mut record = summed(&sheets);
     // Left out by --effects, normal maps are not drawn.
@@ -229,7 +231,7 @@ fn summed(sheets: &[Gathered]) -> MapRecord {
 }
 
 /// The point of a surface that a texel stands for.
-fn receiver(done: &Done<'_>, texel: &Texel) -> Receiver {
+pub(crate) fn receiver(done: &Done<'_>, texel: &Texel) -> Receiver {
     let mesh = &done.scene.meshes[texel.mesh as usize];
     let triangle = texel.triangle as usize;
     let [u, v] = texel.barycentrics;
@@ -247,10 +249,21 @@ fn arrive(
     points: &[Receiver],
     index: &(dyn Fn(usize) -> u32 + Sync),
 ) -> Result<Vec<Arrival>, Error> {
+    arrive_as(done, arrivals, (points, Stage::Texels), index, &|_, arrival| arrival)
+}
+
+/// [`arrive`], each turned into what is kept of it as soon as it is there; `index` is the seed of a point's rays.
+pub(crate) fn arrive_as<T: Send>(
+    done: &Done<'_>,
+    arrivals: &Arrivals<'_>,
+    (points, stage): (&[Receiver], Stage),
+    index: &(dyn Fn(usize) -> u32 + Sync),
+    keep: &(dyn Fn(usize, Arrival) -> T + Sync),
+) -> Result<Vec<T>, Error> {
     let total = points.len() as u64;
-    done.monitor.begin(Stage::Texels, total);
+    done.monitor.begin(stage, total);
     let order = morton_order(points, 0..points.len() as u32);
-    let chunks: Vec<Vec<(u32, Arrival)>> = order
+    let chunks: Vec<Vec<(u32, T)>> = order
         .par_chunks(CHUNK)
         .map_init(Worker::new, |worker, ids| {
             let mut out = Vec::with_capacity(ids.len());
@@ -259,16 +272,16 @@ fn arrive(
                     break;
                 }
                 let arrival = arrivals.at(&points[id as usize], index(id as usize), worker);
-                done.monitor.receiver_done(Stage::Texels, total, arrival.visibility_rays + arrival.bounce_rays);
-                out.push((id, arrival));
+                done.monitor.receiver_done(stage, total, arrival.visibility_rays + arrival.bounce_rays);
+                out.push((id, keep(id as usize, arrival)));
             }
             out
         })
         .collect();
     done.monitor.check()?;
-    let mut all: Vec<(u32, Arrival)> = chunks.into_iter().flatten().collect();
+    let mut all: Vec<(u32, T)> = chunks.into_iter().flatten().collect();
     all.sort_unstable_by_key(|(id, _)| *id);
-    Ok(all.into_iter().map(|(_, arrival)| arrival).collect())
+    Ok(all.into_iter().map(|(_, kept)| kept).collect())
 }
 
 /// The numbers of the file: `[function][coefficient of the light]` pictures.

@@ -25,6 +25,8 @@ pub(crate) struct Facts {
     pub(crate) holes: f32,
     /// Whether it shows a reflection that is worth drawing.
     pub(crate) shines: bool,
+    /// Whether it mirrors light in its colour: a coloured metal.
+    pub(crate) tinted: bool,
     /// Largest reflectance at normal incidence.
     pub(crate) reflectance: f32,
     /// Whether it has a normal map.
@@ -54,6 +56,7 @@ impl Facts {
             masked: material.is_masked(),
             holes: hole_share(scene, index),
             shines: metallic > METALLIC || material.roughness * gloss.smallest.y < SHINY,
+            tinted: metallic > METALLIC && is_colored(scene, material),
             reflectance: DIELECTRIC.max(metallic * color.max_element()).min(1.0),
             bumpy: material.normal_texture.is_some(),
             emission: glow.max_element(),
@@ -69,6 +72,7 @@ impl Facts {
             masked: false,
             holes: 0.0,
             shines: false,
+            tinted: false,
             reflectance: 0.0,
             bumpy: false,
             emission: 0.0,
@@ -113,6 +117,14 @@ fn passes(scene: &Scene, material: &Material, index: usize) -> f32 {
 fn vertex_alpha(scene: &Scene, index: usize) -> f32 {
     let meshes = scene.meshes.iter().filter(|mesh| mesh.material as usize == index);
     meshes.flat_map(|mesh| &mesh.colors).map(|color| color.w).fold(1.0, f32::min)
+}
+
+/// Whether the base colour may differ between channels.
+fn is_colored(scene: &Scene, material: &Material) -> bool {
+    let [r, g, b, _] = material.base_color.to_array();
+    let grey = |texel: &[u8; 4]| texel[0] == texel[1] && texel[1] == texel[2];
+    let texels = material.base_color_texture.map(|slot| &scene.textures[slot.texture as usize].rgba);
+    r != g || g != b || texels.is_some_and(|texels| !texels.iter().all(grey))
 }
 
 fn shown(scene: &Scene, index: usize) -> bool {

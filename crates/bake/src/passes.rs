@@ -62,18 +62,39 @@ impl<'a> Monitor<'a> {
 /// Receivers that are worked on together, with those that send light to them where that is kept.
 pub(crate) struct Chunk {
     ids: Vec<u32>,
-    senders: Option<Senders>,
+    senders: Option<Kept>,
+}
+
+/// Who sends light to the receivers of a chunk.
+struct Kept {
+    /// What surfaces scatter.
+    scattered: Senders,
+    /// What surfaces that shine mirror of light from other surfaces: from the second bounce on.
+    mirrored: Senders,
+}
+
+impl Kept {
+    fn of(world: &World<'_>, results: &[Gathered]) -> Self {
+        Self {
+            scattered: Senders::of(world, results, |result| &result.hits),
+            mirrored: Senders::of(world, results, |result| &result.late),
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        self.scattered.bytes() + self.mirrored.bytes()
+    }
 }
 
 impl Chunk {
     /// Receivers with what they were found to see.
     pub(crate) fn of(world: &World<'_>, ids: Vec<u32>, results: &[Gathered]) -> Self {
-        Self { ids, senders: Some(Senders::of(world, results)) }
+        Self { ids, senders: Some(Kept::of(world, results)) }
     }
 
     /// Takes the memory of the senders from `room`, or forgets them where it does not suffice.
     pub(crate) fn keep_within(&mut self, room: &mut u64) {
-        match room.checked_sub(self.senders.as_ref().map_or(0, Senders::bytes)) {
+        match room.checked_sub(self.senders.as_ref().map_or(0, Kept::bytes)) {
             Some(rest) => *room = rest,
             None => self.senders = None,
         }
@@ -111,7 +132,7 @@ pub(crate) fn gather_pass(
                     monitor.receiver_done(stage, total, result.visibility_rays + result.bounce_rays);
                     results.push(result);
                 }
-                let senders = keep.then(|| Senders::of(gatherer.world, &results));
+                let senders = keep.then(|| Kept::of(gatherer.world, &results));
                 (Chunk { ids: ids.to_vec(), senders }, results)
             })
             .collect();
@@ -127,15 +148,17 @@ pub(crate) fn gather_pass(
     Ok(chunks)
 }
 
-/// One bounce, \[G\] eq. (11): every receiver sums what the surfaces that it sees send on of the bounce before.
+/// One bounce, \[G\] eq. (11), from number 1: every receiver sums what the surfaces that it sees send on of the bounce before. What surfaces
+/// mirror of light that falls on them straight is not in the first: it is found with the direct transfer.
 pub(crate) fn bounce_pass(
     gatherer: &Gatherer<'_>,
     receivers: &Receivers,
     chunks: &[Chunk],
     last: &Field,
-    stage: Stage,
+    number: u32,
     monitor: &Monitor<'_>,
 ) -> Result<Field, Error> {
+    let (stage, mirrors) = (Stage::Bounce(number), number > 1);
     let total = chunks.iter().map(|c| c.ids.len() as u64).sum();
     monitor.begin(stage, total);
     let mut next = Field::zeros(receivers.list.len(), last.coefficients, last.channels);
@@ -150,7 +173,12 @@ pub(crate) fn bounce_pass(
                     }
                     let mut rays = 0;
                     match &chunk.senders {
-                        Some(senders) => add_reflected(receivers, id, senders.row(k), last, row),
+                        Some(kept) => {
+                            add_reflected(receivers, id, kept.scattered.row(k), last, row);
+                            if mirrors {
+                                add_reflected(receivers, id, kept.mirrored.row(k), last, row);
+                            }
+                        }
                         None => {
                             // Too much to keep: what the receiver sees is found again.
                             let again = gatherer.gather(&receivers.list[id as usize], id, worker);
@@ -158,6 +186,10 @@ pub(crate) fn bounce_pass(
                             let mut found = Vec::new();
                             fill_row(gatherer.world, &again.hits, &mut found);
                             add_reflected(receivers, id, &found, last, row);
+                            if mirrors {
+                                fill_row(gatherer.world, &again.late, &mut found);
+                                add_reflected(receivers, id, &found, last, row);
+                            }
                         }
                     }
                     monitor.receiver_done(stage, total, rays);

@@ -87,16 +87,6 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
     let wanted = |effect, called_for: bool| allowed(settings, effect) && (forced || called_for);
     let drawn = |effect, called_for: bool| allowed(settings, effect) && called_for;
     let visibility = wanted(Effect::Visibility, traced > 0);
-    let bounced = [facts.mean_albedo * survey.coverage[0], facts.largest_albedo * survey.coverage[1]];
-    let tolerance = f64::from(tolerance(settings.quality));
-    let bounces = match settings.bounces {
-        Bounces::Fixed(n) => n,
-        Bounces::Auto => most_bounces(facts.largest_albedo, tolerance).max(u32::from(forced)),
-    };
-    let interreflection = visibility && bounces > 0 && wanted(Effect::Interreflection, facts.largest_albedo > 0.0);
-    let gain = if interreflection { gain(bounced[0]) } else { 1.0 };
-    let left_out = bandwidth::left_out(&survey, &open_norms(bands(settings)), &settings.light, gain);
-    let bands_needed = bandwidth::needed(&left_out, tolerance);
     let gloss_stake = facts.reflectance() * survey.coverage[1].min(1.0);
     let named = matches!(&settings.effects, Effects::Only(list) if list.contains(&Effect::Glossy));
     let glossy = visibility
@@ -104,10 +94,21 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
         && allowed(settings, Effect::Glossy)
         && facts.shiny.any()
         && (forced || named || gloss_stake > GLOSS_WORTH);
+    let bounced = [facts.mean_albedo * survey.coverage[0], facts.largest_albedo * survey.coverage[1]];
+    let tolerance = f64::from(tolerance(settings.quality));
+    let returned = if glossy { facts.largest_albedo.max(facts.reflectance()) } else { facts.largest_albedo };
+    let bounces = match settings.bounces {
+        Bounces::Fixed(n) => n,
+        Bounces::Auto => most_bounces(returned, tolerance).max(u32::from(forced)),
+    };
+    let interreflection = visibility && bounces > 0 && wanted(Effect::Interreflection, returned > 0.0);
+    let gain = if interreflection { gain(bounced[0]) } else { 1.0 };
+    let left_out = bandwidth::left_out(&survey, &open_norms(bands(settings)), &settings.light, gain);
+    let bands_needed = bandwidth::needed(&left_out, tolerance);
     let d = Decisions {
         visibility,
         interreflection,
-        color: interreflection && wanted(Effect::Color, facts.colored.any()),
+        color: interreflection && wanted(Effect::Color, facts.colored.any() || glossy && facts.tinted.any()),
         masks: drawn(Effect::Masks, facts.holed.any() || forced && facts.masked.any()),
         specular: drawn(Effect::Specular, facts.shiny.any()),
         glossy,

@@ -6,7 +6,6 @@ use crate::field::Field;
 use crate::gather::{Gathered, Gatherer, Worker};
 use crate::passes::{Chunk, Monitor, bounce_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
-use crate::progress::Stage;
 use crate::receivers::morton_order;
 use crate::{Error, Extras, settings};
 use coeff_io::{Effect, Plan, Settings};
@@ -66,7 +65,8 @@ fn try_out(
     let hits = simulates(plan, Effect::Interreflection);
     let quality = settings.quality;
     let (permanent, worth) = (receivers.permanent as u32, NEAR_WORTH * tolerance(quality));
-    let gatherer = Gatherer { world, bank: &bank, bands, quality, visibility: true, hits, permanent, worth };
+    let gatherer =
+        Gatherer { world, bank: &bank, bands, quality, visibility: true, hits, permanent, worth, mirrors: None };
     let runs = runs(&morton_order(&receivers.list, traced.iter().copied()));
     let gather = |gatherer: &Gatherer<'_>| -> (Vec<Vec<Gathered>>, f64) {
         let start = now();
@@ -99,7 +99,7 @@ fn try_out(
         let last = Field::zeros(receivers.list.len(), bands.coefficients(), plan.channels as usize);
         let start = now();
         let monitor = Monitor::new(&|_| ControlFlow::Continue(()));
-        bounce_pass(&gatherer, receivers, &chunks, &last, Stage::Bounce(1), &monitor)?;
+        bounce_pass(&gatherer, receivers, &chunks, &last, 1, &monitor)?;
         let bounce = (now() - start).as_secs_f64();
         // Receivers at near points are looked from too; those on backs of surfaces are not foreseen.
         let near = rays(&seen, |g| g.near.len() as u64) / tried as f64;

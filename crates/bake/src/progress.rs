@@ -24,7 +24,9 @@ pub enum Stage {
     Helpers,
     /// The n-th bounce, from 1.
     Bounce(u32),
-    /// What arrives at the texels of light maps.
+    /// What surfaces that shine see.
+    Gloss,
+    /// What arrives at the texels of light maps and transfer textures.
     Texels,
     /// What arrives at the probes of a volume.
     Probes,
@@ -37,6 +39,7 @@ impl std::fmt::Display for Stage {
             Self::Visibility => write!(f, "visibility"),
             Self::Helpers => write!(f, "backs and near surfaces"),
             Self::Bounce(n) => write!(f, "bounce {n}"),
+            Self::Gloss => write!(f, "gloss"),
             Self::Texels => write!(f, "texels"),
             Self::Probes => write!(f, "probes"),
         }

@@ -45,6 +45,7 @@ pub fn sample(scene: &Scene, settings: &Settings, count: usize) -> Result<Vec<Sa
         hits: false,
         permanent: u32::MAX,
         worth: 0.0,
+        mirrors: None,
     };
     let order = morton_order(&prepared.receivers.list, prepared.traced.iter().copied());
     let count = count.min(order.len());

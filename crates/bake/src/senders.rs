@@ -43,12 +43,12 @@ pub(crate) struct Senders {
 }
 
 impl Senders {
-    /// Rows of what receivers were found to see.
-    pub(crate) fn of(world: &World<'_>, results: &[Gathered]) -> Self {
+    /// Rows of what receivers were found to see, of the hits that are picked.
+    pub(crate) fn of(world: &World<'_>, results: &[Gathered], hits: fn(&Gathered) -> &[PackedHit]) -> Self {
         let mut senders = Self { ends: Vec::with_capacity(results.len()), entries: Vec::new() };
         let mut row = Vec::new();
         for result in results {
-            fill_row(world, &result.hits, &mut row);
+            fill_row(world, hits(result), &mut row);
             senders.entries.extend_from_slice(&row);
             senders.ends.push(senders.entries.len() as u32);
         }

@@ -138,7 +138,8 @@ impl<'a> World<'a> {
         mesh.triangles[local].map(|v| mesh.positions[v as usize])
     }
 
-    fn locate(&self, triangle: u32) -> (usize, usize) {
+    /// Mesh of a traced triangle, and its index within the mesh.
+    pub(crate) fn locate(&self, triangle: u32) -> (usize, usize) {
         let [mesh, local] = self.sources[triangle as usize];
         (mesh as usize, local as usize)
     }

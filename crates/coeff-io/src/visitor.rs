@@ -57,6 +57,14 @@ impl Prt {
         if let Some(maps) = &mut all.maps {
             maps.sheet_of_mesh.resize(all.meshes.len(), None);
         }
+        if let Some(textures) = &mut all.transfer_textures {
+            textures.sheet_of_mesh.resize(all.meshes.len(), None);
+        }
+        if let Some(vertices) = all.gloss.as_mut().and_then(|gloss| gloss.vertices.as_mut()) {
+            vertices.first_row.resize(all.meshes.len(), None);
+        }
+        // The clusters of the scene say nothing of the object's vertices.
+        all.compressed = None;
         Ok(all)
     }
 

@@ -2,7 +2,7 @@
 
 mod sample;
 
-use coeff_io::{ALIGNMENT, Kind, Prt, Transfer, check, inspect};
+use coeff_io::{ALIGNMENT, Codebook, Codebooks, Kind, Prt, Table, Transfer, check, inspect};
 use sample::sample;
 
 #[test]
@@ -62,6 +62,7 @@ fn absent_parts_take_no_chunk() {
     prt.geometry.colors.clear();
     prt.textures.clear();
     (prt.maps, prt.volume) = (None, None);
+    (prt.gloss, prt.transfer_textures, prt.codebooks) = (None, None, Codebooks::default());
     prt.materials[0] = prt.materials[1].clone();
     prt.plan.channels = 1;
     let values = prt.transfer.values.iter().step_by(3).copied().collect();
@@ -109,4 +110,25 @@ fn a_failed_write_leaves_the_old_file() {
     assert!(broken.write(&path).is_err());
     assert_eq!(std::fs::read(&path).unwrap(), before);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+/// The transfer of the vertices in clusters: the chunk of exact numbers is not there, and what is read is what the clusters say.
+#[test]
+fn clustered_transfer_takes_the_place_of_the_exact_one() {
+    let mut prt = sample();
+    let book = Codebook::new([12, 2, 1], &(0..48).map(|i| (i % 13) as f32 / 8.0 - 0.5).collect::<Vec<_>>());
+    let rows = prt.geometry.positions.len();
+    let weights: Vec<f32> = (0..rows).map(|i| i as f32 / 4.0 - 1.0).collect();
+    let table = Table::clustered(&book, &(0..rows).map(|i| (i % 2) as u16).collect::<Vec<_>>(), &weights);
+    prt.transfer.values = table.decode(Some(&book));
+    prt.codebooks.diffuse = Some(book);
+    prt.compressed = Some(table);
+    let bytes = prt.to_bytes().unwrap();
+    assert_eq!(Prt::from_bytes(&bytes).unwrap(), prt);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.prt");
+    prt.write(&path).unwrap();
+    assert!(inspect(&path).unwrap().chunks.iter().all(|chunk| chunk.kind != Kind::Transfer));
+    prt.transfer.values[3] += 1.0;
+    assert!(prt.to_bytes().unwrap_err().to_string().contains("clustered"), "another transfer than that of the clusters");
 }

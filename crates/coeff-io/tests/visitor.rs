@@ -37,6 +37,9 @@ fn scene() -> Prt {
     (prt.transfer.bands, prt.settings.bands, prt.plan.bands) = (3, 3, 3);
     prt.transfer.values = vec![0.25; rows];
     prt.volume = Some(open_sky());
+    // Those of the sample are of two bands.
+    prt.transfer_textures = None;
+    prt.codebooks.diffuse = None;
     prt
 }
 

@@ -128,6 +128,13 @@ impl Scene {
         bent.try_normalize().unwrap_or(normal)
     }
 
+    /// Metallic share and perceptual roughness at a point of a triangle, in [0, 1].
+    pub fn shine(&self, mesh: usize, triangle: usize, u: f32, v: f32) -> [f32; 2] {
+        let material = self.material(mesh);
+        let texel = self.slot(material.metallic_roughness_texture, mesh, triangle, u, v, false);
+        [material.metallic * texel.z, material.roughness * texel.y].map(|share| share.clamp(0.0, 1.0))
+    }
+
     /// Linear radiance that a point of a triangle emits.
     pub fn emission(&self, mesh: usize, triangle: usize, u: f32, v: f32) -> Vec3 {
         let material = self.material(mesh);

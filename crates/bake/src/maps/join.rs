@@ -1,6 +1,5 @@
 //! Where the light of sheets has to agree: look-ups on both sides of every seam.
 
-use super::Gathered;
 use super::plate::{NONE, Plate};
 use super::stitch::{Agreement, stitch};
 use crate::extras::Done;
@@ -13,24 +12,21 @@ const PER_TEXEL: f32 = 2.0;
 const MOST_PER_SLOT: usize = 32;
 
 /// Makes both sides of every seam between the meshes of all sheets agree.
-pub(super) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], sheets: &mut [Gathered]) {
+pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], plates: &mut [&mut Plate]) {
     let meshes: Vec<usize> = (0..sheet_of_mesh.len()).filter(|&mesh| sheet_of_mesh[mesh].is_some()).collect();
     let sheet_of = |mesh: u32| sheet_of_mesh[mesh as usize].expect("only meshes with a sheet") as usize;
     let mut first_slot = vec![0u32];
-    for sheet in sheets.iter() {
-        first_slot.push(first_slot[first_slot.len() - 1] + sheet.plate.slots() as u32);
+    for plate in plates.iter() {
+        first_slot.push(first_slot[first_slot.len() - 1] + plate.slots() as u32);
     }
     let look_up = |mesh: u32, uv: Vec2| -> Agreement {
         let sheet = sheet_of(mesh);
-        bilinear(&sheets[sheet].plate, uv)
-            .into_iter()
-            .map(|(slot, weight)| (slot + first_slot[sheet], weight))
-            .collect()
+        bilinear(plates[sheet], uv).into_iter().map(|(slot, weight)| (slot + first_slot[sheet], weight)).collect()
     };
     let mut agreements = Vec::new();
     for seam in seams(done.scene, &meshes) {
         let length = |side: &scene::lightmap::SeamSide| {
-            let plate = &sheets[sheet_of(side.mesh)].plate;
+            let plate = &plates[sheet_of(side.mesh)];
             ((side.ends[1] - side.ends[0]) * Vec2::new(plate.width as f32, plate.height as f32)).length()
         };
         let points =
@@ -47,13 +43,13 @@ pub(super) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], sheets:
             }
         }
     }
-    let Some(row_len) = sheets.first().map(|sheet| sheet.plate.row_len) else { return };
-    let mut values: Vec<f32> = sheets.iter_mut().flat_map(|sheet| std::mem::take(&mut sheet.plate.values)).collect();
+    let Some(row_len) = plates.first().map(|plate| plate.row_len) else { return };
+    let mut values: Vec<f32> = plates.iter_mut().flat_map(|plate| std::mem::take(&mut plate.values)).collect();
     stitch(&agreements, row_len, &mut values);
     let mut rest = &values[..];
-    for sheet in sheets {
-        let (own, others) = rest.split_at(sheet.plate.slots() * row_len);
-        sheet.plate.values = own.to_vec();
+    for plate in plates {
+        let (own, others) = rest.split_at(plate.slots() * row_len);
+        plate.values = own.to_vec();
         rest = others;
     }
 }
