@@ -25,8 +25,8 @@ fn parse(text: &str) -> Result<Source, std::convert::Infallible> {
 }
 
 /// Wrong usage: a name that is not built in.
-fn unknown(name: &str, known: &[(&str, &str)]) -> Usage {
-    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+fn unknown(name: &str, known: &[&[(&str, &str)]]) -> Usage {
+    let names: Vec<&str> = known.iter().copied().flatten().map(|(name, _)| *name).collect();
     Usage(format!("there is no 'builtin:{name}'; there are {}", names.join(", ")))
 }
 
@@ -59,7 +59,9 @@ impl SceneSource {
     pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
         let scene = match &self.0 {
             Source::Path(path) => scene::load(path)?,
-            Source::Builtin(name) => scene::builtin(name).ok_or_else(|| unknown(name, scene::BUILTINS))?,
+            Source::Builtin(name) => {
+                scene::builtin(name).ok_or_else(|| unknown(name, &[scene::BUILTINS, scene::PAPER_SCENES]))?
+            }
         };
         for warning in &scene.report.warnings {
             console.notice(&format!("warning: {}: {}", warning.object, warning.message));
@@ -120,7 +122,7 @@ impl ProbeSource {
         let path = match &self.0 {
             Source::Path(path) => path,
             Source::Builtin(name) => {
-                return Ok(probe_io::builtin(name).ok_or_else(|| unknown(name, probe_io::BUILTINS))?);
+                return Ok(probe_io::builtin(name).ok_or_else(|| unknown(name, &[probe_io::BUILTINS]))?);
             }
         };
         let negatives = match read.negatives {

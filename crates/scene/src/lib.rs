@@ -24,7 +24,7 @@ mod weld;
 
 pub use bounds::{Bounds, default_camera};
 pub use error::Error;
-pub use known::{BUILTINS, builtin};
+pub use known::{BUILTINS, PAPER_SCENES, builtin};
 pub use load::load;
 pub use model::{
     AlphaMode, Camera, LightKind, Material, Mesh, PunctualLight, Report, Scene, Texture, TextureSlot, Warning, Wrap,

@@ -7,7 +7,7 @@ use crate::{Camera, Material, Mesh, Scene};
 /// A mesh under construction.
 #[derive(Default)]
 pub(super) struct Patches {
-    mesh: Mesh,
+    pub(super) mesh: Mesh,
 }
 
 impl Patches {
@@ -76,7 +76,8 @@ impl Patches {
         mesh
     }
 
-    fn triangle(&mut self, triangle: [u32; 3]) {
+    /// Adds a triangle unless it has no area.
+    pub(super) fn triangle(&mut self, triangle: [u32; 3]) {
         let [a, b, c] = triangle.map(|i| self.mesh.positions[i as usize]);
         if (b - a).cross(c - a).length() > 0.0 {
             self.mesh.triangles.push(triangle);
