@@ -226,7 +226,8 @@ impl<'a> Run<'a> {
             Baked { transfer: &transfer, openness, plan, achieved, extras },
         );
         // What is sent on reaches texels and probes one bounce later: as many bounces as were asked for, or all.
-        let sent = match (self.settings.bounces, extras.is_empty()) {
+        let used = !extras.is_empty() || self.gatherer.mirrors.is_some();
+        let sent = match (self.settings.bounces, !used) {
             (Bounces::Fixed(1..), false) if self.gatherer.hits => Cow::Owned(transfer.without(&self.last)),
             _ => Cow::Borrowed(&transfer),
         };

@@ -93,7 +93,8 @@ impl<'a> Parts<'a> {
             scene,
             keep_tangents: materials.iter().any(|m| m.normal_texture.is_some()) && any(&|m| !m.tangents.is_empty()),
             has_uv0: slots().any(|s| s.uv_set == 0) && any(&|m| !m.uv0.is_empty()),
-            has_uv1: (extras.maps.is_some() || slots().any(|s| s.uv_set == 1)) && any(&|m| !m.uv1.is_empty()),
+            has_uv1: (extras.maps.is_some() || extras.textures.is_some() || slots().any(|s| s.uv_set == 1))
+                && any(&|m| !m.uv1.is_empty()),
             has_colors: any(&|m| !m.colors.is_empty()),
             meshes: Vec::new(),
             textures: kept.textures,

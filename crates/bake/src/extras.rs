@@ -5,6 +5,7 @@ use crate::directions::DirectionBank;
 use crate::domain::{Domain, Judge};
 use crate::field::Field;
 use crate::gather::Gatherer;
+use crate::gloss::{Compression, TextureSettings};
 use crate::passes::Monitor;
 use crate::plan::allowed;
 use crate::receivers::Receivers;
@@ -21,13 +22,17 @@ pub struct Extras {
     pub maps: Option<MapSettings>,
     /// An irradiance volume.
     pub volume: Option<VolumeSettings>,
-    /// The light to put into them; without one they can be relit.
+    /// The light to put into them, and into the bounces of gloss; without one they can be relit.
     pub light: Option<FixedLight>,
+    /// Transfer in textures; not beside maps.
+    pub textures: Option<TextureSettings>,
+    /// How rows of gloss and transfer are compressed.
+    pub compression: Compression,
 }
 
 impl Extras {
     pub(crate) fn is_empty(&self) -> bool {
-        self.maps.is_none() && self.volume.is_none()
+        self.maps.is_none() && self.volume.is_none() && self.textures.is_none()
     }
 
     /// Refuses a light that lacks coefficients or holds what is no number.
@@ -100,6 +105,20 @@ impl Done<'_> {
     /// What arrives at points, along the directions of a bank of [`Done::bank`].
     pub(crate) fn arrivals<'b>(&'b self, bank: &'b DirectionBank, functions: Bands) -> Arrivals<'b> {
         let light = self.light.map(|light| &light.coefficients[..self.light_bands().coefficients()]);
+        self.arrivals_under(bank, functions, light)
+    }
+
+    /// The same for every coefficient of the light, whether one is fixed or not.
+    pub(crate) fn relightable<'b>(&'b self, bank: &'b DirectionBank, functions: Bands) -> Arrivals<'b> {
+        self.arrivals_under(bank, functions, None)
+    }
+
+    fn arrivals_under<'b>(
+        &'b self,
+        bank: &'b DirectionBank,
+        functions: Bands,
+        light: Option<&'b [[f32; 3]]>,
+    ) -> Arrivals<'b> {
         // Surfaces that see nothing of each other are seen from points in space.
         let in_space = matches!(bank.domain, Domain::Sphere(_));
         let bounces = allowed(self.settings, Effect::Interreflection) && self.settings.bounces != Bounces::Fixed(0);
@@ -161,6 +180,7 @@ impl Done<'_> {
         if let Some(settings) = &extras.volume {
             prt.volume = Some(crate::volume::bake(self, settings, prt)?);
         }
+        crate::gloss::bake(self, extras, prt)?;
         Ok(())
     }
 }

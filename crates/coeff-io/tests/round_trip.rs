@@ -130,5 +130,8 @@ fn clustered_transfer_takes_the_place_of_the_exact_one() {
     prt.write(&path).unwrap();
     assert!(inspect(&path).unwrap().chunks.iter().all(|chunk| chunk.kind != Kind::Transfer));
     prt.transfer.values[3] += 1.0;
-    assert!(prt.to_bytes().unwrap_err().to_string().contains("clustered"), "another transfer than that of the clusters");
+    assert!(
+        prt.to_bytes().unwrap_err().to_string().contains("clustered"),
+        "another transfer than that of the clusters"
+    );
 }

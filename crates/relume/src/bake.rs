@@ -23,6 +23,8 @@ Examples:
   relume bake house.glb -o house.prt --storage texture --texels 1024 --basis modified-h6
   relume bake house.glb -o house.prt --storage texture --probe noon.hdr --light fixed --window auto --encoding bc6h
   relume bake house.glb -o house.prt --volume 0.5m --volume-levels 1
+  relume bake lobby.glb -o lobby.prt --effects visibility,interreflection,color,specular,glossy,normal-maps --storage transfer --texels 1024
+  relume bake lobby.glb -o lobby.prt --storage transfer --compress 0.02 --bounce-error 0.05
 
 Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest result so far stays.";
 
@@ -55,8 +57,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     output::check(&options.output)?;
     let mut scene = options.scene.load(console)?;
     let probe = options.probe.as_ref().map(|probe| (probe, &options.read));
-    let in_texture = options.bake.in_texture();
-    let extras = options.extras.of(&mut scene, in_texture, settings.bands, probe, console)?;
+    let extras = options.extras.of(&mut scene, options.bake.storage, &settings, probe, console)?;
     interrupt::watch()?;
     let began = Instant::now();
     let path = &options.output;
@@ -116,6 +117,9 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
     if let Some(maps) = &achieved.maps {
         console.notice(&light_maps(maps, prt.settings.quality));
     }
+    if let Some(gloss) = &achieved.gloss {
+        console.notice(&gloss_text(gloss, prt.settings.quality));
+    }
     let repairs = achieved.repairs;
     if repairs.inside + repairs.bad_normals > 0 {
         let (inside, normals) = (repairs.inside, repairs.bad_normals);
@@ -140,6 +144,30 @@ pub(crate) fn light_maps(maps: &coeff_io::MapRecord, quality: Quality) -> String
         (maps.unfilled, "with a chart of nothing else, taken from the vertices"),
         (maps.clipped, "numbers clipped by the encoding"),
         (maps.negative, "negative numbers set to 0"),
+    ] {
+        if count > 0 {
+            text.push_str(&format!("; {count} {what}"));
+        }
+    }
+    text
+}
+
+/// What gloss and transfer textures took and reached, in words.
+pub(crate) fn gloss_text(gloss: &coeff_io::GlossRecord, quality: Quality) -> String {
+    let [exact, held] = gloss.bytes.map(crate::columns::bytes);
+    let mut text = format!("gloss and transfer textures: {} vertices, {} texels", gloss.vertices, gloss.texels);
+    if gloss.texels > 0 {
+        text.push_str(&format!(", {}", error(quality, gloss.error)));
+    }
+    text.push_str(&format!("; {held} instead of {exact}"));
+    for (added, what) in gloss.compression.into_iter().zip(["transfer", "visibility", "bounces"]) {
+        if added > 0.0 {
+            text.push_str(&format!("; clusters err by {:.2} % of {what}", 100.0 * added));
+        }
+    }
+    for (count, what) in [
+        (gloss.inside, "texels inside of bodies"),
+        (gloss.unfilled, "of them with nothing to fill them but the vertices"),
     ] {
         if count > 0 {
             text.push_str(&format!("; {count} {what}"));

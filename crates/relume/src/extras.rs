@@ -2,12 +2,15 @@
 
 use crate::console::Console;
 use crate::draw::Window;
-use crate::maps::MapOptions;
+use crate::gloss::GlossOptions;
+use crate::maps::{MapOptions, TEXELS};
+use crate::settings::Storage;
 use crate::source::{ProbeSource, ReadOptions};
 use crate::usage::Usage;
 use crate::volume::VolumeOptions;
 use anyhow::Result;
 use bake::{Extras, FixedLight};
+use coeff_io::{Effect, Effects, Settings};
 use probe_io::Environment;
 use scene::Scene;
 use sh_math::Bands;
@@ -21,8 +24,10 @@ pub(crate) struct ExtraOptions {
     #[command(flatten)]
     maps: MapOptions,
     #[command(flatten)]
+    gloss: GlossOptions,
+    #[command(flatten)]
     volume: VolumeOptions,
-    /// Whether light maps and volumes answer to any light, or hold that of --probe: fixed takes a small part of the bytes. A fixed volume is
+    /// Whether light maps, volumes and glossy bounces answer to any light, or hold that of --probe: fixed takes a small part of the bytes. A fixed volume is
     /// for export: moving objects (render --visitor) want one that can be relit.
     #[arg(long, value_enum, default_value_t = LightMode::Relightable)]
     light: LightMode,
@@ -40,47 +45,126 @@ enum LightMode {
     Fixed,
 }
 
+/// In which textures light is kept beside the vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    Vertices,
+    Maps,
+    /// Transfer textures of so many texels along a side where none are asked for.
+    Transfer(u32),
+}
+
 impl ExtraOptions {
     /// The extras for a scene, which is unwrapped where its light-map coordinates do not serve.
     pub(crate) fn of(
         &self,
         scene: &mut Scene,
-        in_texture: bool,
-        bands: u32,
+        storage: Storage,
+        settings: &Settings,
         probe: Option<(&ProbeSource, &ReadOptions)>,
         console: &Console,
     ) -> Result<Extras> {
         let volume = self.volume.settings()?;
-        if let (false, Some(option)) = (in_texture, self.maps.typed()) {
+        let glossy = self.calls_for_gloss(scene, storage, settings)?;
+        let place = self.place(scene, storage, settings, glossy, console)?;
+        if let (Place::Vertices, Some(option)) = (place, self.maps.typed()) {
             return Err(Usage(format!("{option} is for light maps: add --storage texture")).into());
+        }
+        if let (false, Some(option)) = (matches!(place, Place::Transfer(_)), self.gloss.typed_of_textures()) {
+            return Err(Usage(format!("{option} is for transfer textures: add --storage transfer")).into());
         }
         if self.window.is_some() && self.light != LightMode::Fixed {
             return Err(Usage("--window is for a light that is baked in: add --light fixed".into()).into());
         }
-        let light = match (self.light, probe) {
-            (LightMode::Relightable, _) => None,
-            (LightMode::Fixed, None) => {
-                return Err(Usage("--light fixed bakes a light in: say which with --probe".into()).into());
-            }
-            (LightMode::Fixed, Some((probe, read))) => {
-                Some(fixed_light(&probe.load(read, console)?, bands, self.window.unwrap_or(Window::None))?)
-            }
-        };
-        if light.is_some() && !in_texture && volume.is_none() {
-            return Err(
-                Usage("--light fixed is for light maps and volumes: add --storage texture or --volume".into()).into()
-            );
+        let light = self.fixed(place, settings.bands, probe, console)?;
+        if light.is_some() && place == Place::Vertices && volume.is_none() && !glossy {
+            return Err(Usage(
+                "--light fixed is for light maps, volumes and glossy bounces: add --storage texture, --volume or --effects with glossy"
+                    .into(),
+            )
+            .into());
         }
         if let (Some(light), true) = (&light, volume.is_some()) {
             console.notice(&format!("the volume will hold the light of {} alone: it lights no --visitor", light.name));
         }
-        let maps = in_texture.then(|| self.maps.settings(scene, console)).transpose()?;
+        let maps = (place == Place::Maps).then(|| self.maps.settings(scene, console)).transpose()?;
         if let Some(maps) = &maps {
-            let most = maps.most_bytes(light.is_none().then_some(bands));
+            let most = maps.most_bytes(light.is_none().then_some(settings.bands));
             let text = format!("light maps will take up to {} of the file", crate::columns::bytes(most));
             if most >= MANY { console.notice(&text) } else { console.detail(&text) }
         }
-        Ok(Extras { maps, volume, light })
+        let textures = match place {
+            Place::Transfer(texels) => {
+                let bent = !matches!(&settings.effects, Effects::Only(list) if !list.contains(&Effect::NormalMaps));
+                Some(self.maps.textures(scene, &self.gloss, texels, bent, console)?)
+            }
+            Place::Vertices | Place::Maps => None,
+        };
+        Ok(Extras { maps, volume, light, textures, compression: self.gloss.compression() })
+    }
+
+    /// Whether the plan calls for gloss, where that decides something.
+    fn calls_for_gloss(&self, scene: &Scene, storage: Storage, settings: &Settings) -> Result<bool> {
+        if storage != Storage::Texture && self.light != LightMode::Fixed {
+            return Ok(false);
+        }
+        let plan = bake::plan(scene, settings).map_err(crate::bake::fault)?;
+        Ok(plan.rows.iter().any(|row| row.effect == Effect::Glossy && row.simulate))
+    }
+
+    fn place(
+        &self,
+        scene: &Scene,
+        storage: Storage,
+        settings: &Settings,
+        glossy: bool,
+        console: &Console,
+    ) -> Result<Place> {
+        let of_maps = self.maps.typed_of_maps();
+        Ok(match storage {
+            Storage::Vertex => Place::Vertices,
+            Storage::Maps => Place::Maps,
+            Storage::Texture if of_maps.is_some() || !glossy => Place::Maps,
+            Storage::Texture => {
+                console.notice("surfaces shine: transfer textures hold what they see (--storage maps for light maps)");
+                Place::Transfer(TEXELS)
+            }
+            Storage::Transfer => match of_maps {
+                Some(option) => return Err(Usage(format!("{option} is for light maps: use --storage maps")).into()),
+                None => Place::Transfer(TEXELS),
+            },
+            Storage::Auto => {
+                let choice = bake::storage(scene, settings).map_err(crate::bake::fault)?;
+                match choice.texels {
+                    Some(texels) => {
+                        console.notice(&format!("storage: {}", choice.reason));
+                        Place::Transfer(texels)
+                    }
+                    None => Place::Vertices,
+                }
+            }
+        })
+    }
+
+    /// The light that is baked in, if one is.
+    fn fixed(
+        &self,
+        place: Place,
+        bands: u32,
+        probe: Option<(&ProbeSource, &ReadOptions)>,
+        console: &Console,
+    ) -> Result<Option<FixedLight>> {
+        match (self.light, probe) {
+            (LightMode::Relightable, _) => Ok(None),
+            (LightMode::Fixed, None) => {
+                Err(Usage("--light fixed bakes a light in: say which with --probe".into()).into())
+            }
+            (LightMode::Fixed, Some((probe, read))) => {
+                // The bounces of gloss take all bands that reach a product; light maps and volumes the first of them.
+                let bands = if place == Place::Maps { bands } else { 2 * bands - 1 };
+                Ok(Some(fixed_light(&probe.load(read, console)?, bands, self.window.unwrap_or(Window::None))?))
+            }
+        }
     }
 }
 

@@ -10,6 +10,7 @@ mod cost;
 mod draw;
 mod export;
 mod extras;
+mod gloss;
 mod inspect;
 mod inspect_maps;
 mod interrupt;

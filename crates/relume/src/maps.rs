@@ -1,20 +1,21 @@
 //! The options of light maps.
 
 use crate::console::Console;
+use crate::gloss::{GlossOptions, SheetSet};
 use crate::sheets::{PADDING, SMALLEST, SheetChoice};
 use anyhow::Result;
-use bake::MapSettings;
+use bake::{MapSettings, TextureSettings};
 use coeff_io::Encoding;
 use scene::Scene;
 use sh_math::hemisphere::Basis;
 
 /// Texels along a side where none are asked for.
-const TEXELS: u32 = 1024;
+pub(crate) const TEXELS: u32 = 1024;
 
 /// How light maps are baked, as typed.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct MapOptions {
-    /// Texels along a side of the sheets with --storage texture: about so many times as many in all, shared by area.
+    /// Texels along a side of the sheets of light maps and transfer textures: about so many times as many in all, shared by area.
     /// 1024 where not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
     texels: Option<u32>,
@@ -89,6 +90,12 @@ pub(crate) fn basis(text: &str) -> Result<Basis, String> {
 }
 
 impl MapOptions {
+    /// The first option of light maps alone that was typed.
+    pub(crate) fn typed_of_maps(&self) -> Option<&'static str> {
+        let options = [("--basis", self.basis.is_some()), ("--encoding", self.encoding.is_some())];
+        options.into_iter().find(|(_, is_typed)| *is_typed).map(|(name, _)| name)
+    }
+
     /// The first option that was typed.
     pub(crate) fn typed(&self) -> Option<&'static str> {
         let options = [
@@ -101,6 +108,43 @@ impl MapOptions {
             ("--padding", self.padding.is_some()),
         ];
         options.into_iter().find(|(_, is_typed)| *is_typed).map(|(name, _)| name)
+    }
+
+    /// The settings of transfer textures for a scene, whose surfaces are unwrapped where their own coordinates do not serve: a sheet for
+    /// each mesh. `texels` along a side where none are asked for.
+    pub(crate) fn textures(
+        &self,
+        scene: &mut Scene,
+        options: &GlossOptions,
+        texels: u32,
+        bent: bool,
+        console: &Console,
+    ) -> Result<TextureSettings> {
+        let choice = SheetChoice {
+            texels: self.texels.unwrap_or(texels),
+            unwrap: self.unwrap,
+            padding: self.padding.unwrap_or(PADDING),
+            only: self.mapped.clone(),
+        };
+        let sheets = match options.sheets {
+            SheetSet::Object => choice.per_object(scene, console)?,
+            SheetSet::Scene => choice.sheets(scene, console)?,
+        };
+        for sheet in &sheets {
+            console.detail(&format!(
+                "transfer texture of {} x {} texels, {} meshes",
+                sheet.width,
+                sheet.height,
+                sheet.meshes.len()
+            ));
+        }
+        Ok(TextureSettings {
+            sheets,
+            dilation: self.padding.unwrap_or(PADDING).max(1),
+            levels: !options.no_levels,
+            bent,
+            stitch: !self.no_stitch,
+        })
     }
 
     /// The settings for a scene, whose surfaces are unwrapped where their own coordinates do not serve.

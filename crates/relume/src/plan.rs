@@ -3,7 +3,7 @@
 use crate::columns::{Columns, Side, bytes, count, seconds, wrap};
 use crate::console::Console;
 use crate::light_facts::LightFacts;
-use crate::settings::BakeOptions;
+use crate::settings::{BakeOptions, Storage};
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use anyhow::Result;
 use bake::{Extras, Price};
@@ -57,9 +57,10 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
     let settings = options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))?;
     let scene = options.scene.load(console)?;
+    let storage = options.bake.storage;
     let began = Instant::now();
-    let price = bake::price(&scene, &settings, &extras(&scene, options.bake.in_texture()), &|| began.elapsed())
-        .map_err(crate::bake::fault)?;
+    let price =
+        bake::price(&scene, &settings, &extras(&scene, storage), &|| began.elapsed()).map_err(crate::bake::fault)?;
     let text = if options.json {
         as_json(&scene, &settings, &price, light.as_ref())
     } else {
@@ -67,6 +68,11 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         if options.meshes {
             text.push('\n');
             text.push_str(&meshes(&scene, &price.plan));
+        }
+        if storage == Storage::Auto {
+            let choice = bake::storage(&scene, &settings).map_err(crate::bake::fault)?;
+            let texels = choice.texels.map_or(String::new(), |n| format!(" (--texels {n} in all)"));
+            text.push_str(&format!("\nstorage: {}{texels}\n", choice.reason));
         }
         if let Some(light) = &light {
             text.push_str(&format!("\n{}\n", light.text(price.plan.bands)));
@@ -77,8 +83,8 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
 }
 
 /// Light maps as far as a plan looks at them: whether normal maps ask for directions.
-fn extras(scene: &Scene, in_texture: bool) -> Extras {
-    let maps = in_texture.then(|| crate::maps::planned(scene));
+fn extras(scene: &Scene, storage: Storage) -> Extras {
+    let maps = matches!(storage, Storage::Texture | Storage::Maps).then(|| crate::maps::planned(scene));
     Extras { maps, ..Extras::default() }
 }
 

@@ -27,12 +27,12 @@ pub(crate) struct BakeOptions {
     #[arg(long, value_name = "auto|off|METRES", default_value = "auto", value_parser = refine)]
     refine: Refine,
     /// Effects that may be simulated: auto for those that the scene calls for, all, none, or a list of visibility,
-    /// interreflection, color, masks, specular, normal-maps, emission, transmission.
+    /// interreflection, color, masks, specular, glossy, normal-maps, emission, transmission.
     #[arg(long, value_name = "auto|all|none|LIST", default_value = "auto", value_parser = effects)]
     effects: Effects,
     /// Where coefficients are stored.
     #[arg(long, value_enum, default_value_t = Storage::Auto)]
-    storage: Storage,
+    pub(crate) storage: Storage,
     /// Seed of everything random.
     #[arg(long, value_name = "S", default_value_t = settings::standard().seed)]
     seed: u64,
@@ -46,13 +46,18 @@ pub(crate) struct BakeOptions {
 
 /// Where coefficients are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Storage {
-    /// At the vertices.
+pub(crate) enum Storage {
+    /// At the vertices; in transfer textures where surfaces shine and the triangles are too large for the error asked for.
     Auto,
     /// At the vertices.
     Vertex,
-    /// At the vertices, and in light maps that answer to normal maps.
+    /// At the vertices, and in textures: transfer textures where the plan calls for glossy, light maps where it does not or options of
+    /// theirs are given.
     Texture,
+    /// At the vertices, and in transfer textures: what vertices hold, at texels.
+    Transfer,
+    /// At the vertices, and in light maps that answer to normal maps.
+    Maps,
 }
 
 /// The sequences by the names that are typed.
@@ -89,11 +94,6 @@ impl std::fmt::Display for BandsOption {
 }
 
 impl BakeOptions {
-    /// Whether light maps are asked for.
-    pub(crate) fn in_texture(&self) -> bool {
-        self.storage == Storage::Texture
-    }
-
     /// Bands that are baked at most.
     pub(crate) fn most_bands(&self) -> u32 {
         self.bands.count

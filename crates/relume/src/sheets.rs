@@ -39,13 +39,53 @@ impl SheetChoice {
     /// The sheets for a scene, whose surfaces are unwrapped where their own coordinates do not serve. What has normal maps is marked as
     /// directional.
     pub(crate) fn sheets(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
-        let missing = |name: &&String| !(0..scene.meshes.len()).any(|mesh| is_named(scene, mesh, name));
-        if let Some(name) = self.only.iter().find(missing) {
-            return Err(Usage(format!("--mapped {name}: no mesh or material of {} has that name", scene.name)).into());
-        }
+        self.check_names(scene)?;
         match self.own(scene, console) {
             Some(sheets) => Ok(sheets),
             None => self.unwrapped(scene, console),
+        }
+    }
+
+    /// A sheet for each mesh, by its share of the area: by its own coordinates where they serve, else it is unwrapped alone.
+    pub(crate) fn per_object(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
+        self.check_names(scene)?;
+        let meshes = self.meshes(scene);
+        let all: f64 = meshes.iter().map(|&mesh| area(scene, mesh)).sum();
+        let share = |scene: &Scene, mesh: usize| (area(scene, mesh) / all.max(f64::MIN_POSITIVE)).sqrt();
+        let mut sheets = Vec::new();
+        for mesh in meshes {
+            let side = ((f64::from(self.texels) * share(scene, mesh)).round() as u32).clamp(SMALLEST, self.texels);
+            let faults = lightmap::faults(scene, &[mesh]);
+            let serves = !self.unwrap
+                && !scene.meshes[mesh].uv1.is_empty()
+                && faults.iter().all(|fault| fault.kind == FaultKind::Flat);
+            let size = match serves {
+                true => [side; 2],
+                false => self.unwrap_alone(scene, mesh, side, console)?,
+            };
+            sheets.push(sheet(scene, vec![mesh], size));
+        }
+        Ok(sheets)
+    }
+
+    /// Unwraps one mesh into a sheet of so many texels along a side, or of twice as many until its charts fit.
+    fn unwrap_alone(&self, scene: &mut Scene, mesh: usize, side: u32, console: &Console) -> Result<[u32; 2]> {
+        let mut side = side;
+        loop {
+            match self.unwrap_group(scene, &[mesh], Density::Side(side), console) {
+                Err(_) if side < self.texels => side = (2 * side).min(self.texels),
+                other => return other,
+            }
+        }
+    }
+
+    fn check_names(&self, scene: &Scene) -> Result<()> {
+        let missing = |name: &&String| !(0..scene.meshes.len()).any(|mesh| is_named(scene, mesh, name));
+        match self.only.iter().find(missing) {
+            Some(name) => {
+                Err(Usage(format!("--mapped {name}: no mesh or material of {} has that name", scene.name)).into())
+            }
+            None => Ok(()),
         }
     }
 
@@ -86,19 +126,30 @@ impl SheetChoice {
                 true => Density::Side(self.texels),
                 false => Density::PerMetre(density as f32),
             };
-            let progress = console.progress();
-            let options = Unwrap { density, padding: self.padding };
-            let atlas =
-                lightmap::unwrap(scene, &group, &options, &|stage, done, total| progress.set(stage, done, total))?;
-            drop(progress);
-            let text = format!("{} charts fill {:.0} % of their sheet", atlas.charts, 100.0 * atlas.filled);
-            match atlas.filled < POORLY {
-                true => console.notice(&format!("{text}: more --texels or less --padding would hold more light in it")),
-                false => console.detail(&text),
-            }
-            sheets.push(sheet(scene, group, [atlas.width, atlas.height]));
+            let size = self.unwrap_group(scene, &group, density, console)?;
+            sheets.push(sheet(scene, group, size));
         }
         Ok(sheets)
+    }
+
+    /// Unwraps meshes into one sheet; returns its sides.
+    fn unwrap_group(
+        &self,
+        scene: &mut Scene,
+        group: &[usize],
+        density: Density,
+        console: &Console,
+    ) -> Result<[u32; 2]> {
+        let progress = console.progress();
+        let options = Unwrap { density, padding: self.padding };
+        let atlas = lightmap::unwrap(scene, group, &options, &|stage, done, total| progress.set(stage, done, total))?;
+        drop(progress);
+        let text = format!("{} charts fill {:.0} % of their sheet", atlas.charts, 100.0 * atlas.filled);
+        match atlas.filled < POORLY {
+            true => console.notice(&format!("{text}: more --texels or less --padding would hold more light in it")),
+            false => console.detail(&text),
+        }
+        Ok([atlas.width, atlas.height])
     }
 
     /// Meshes that get light maps: surfaces that stop light, or those of them that are named. Others are drawn by their vertices.

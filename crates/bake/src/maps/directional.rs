@@ -44,7 +44,7 @@ pub fn directional(
 ) -> Result<Directional, Error> {
     let maps =
         MapSettings { basis: Basis::Sh9, sheets: sheets.to_vec(), stitch: false, dilation: 0, encoding: Encoding::F32 };
-    let extras = Extras { maps: Some(maps), light: Some(light.clone()), volume: None };
+    let extras = Extras { maps: Some(maps), light: Some(light.clone()), ..Extras::default() };
     let maps = extras.maps.as_ref().expect("just put there");
     let (_, found) = bake_then(scene, settings, &extras, progress, |done, _| all_directional(done, maps))?;
     Ok(found)

@@ -1,0 +1,197 @@
+//! Texels as receivers: transfer textures (\[T\] sections 4.1 and 4.3), a sheet for each object or for several.
+
+use super::levels;
+use super::row::{Layout, RowMaker};
+use super::settings::TextureSettings;
+use crate::arrival::{Arrival, Arrivals};
+use crate::error::Error;
+use crate::extras::Done;
+use crate::maps::plate::{NONE, Plate};
+use crate::maps::{SheetSettings, arrive_as, receiver, stitch_all};
+use crate::progress::Stage;
+use crate::receivers::Receiver;
+use crate::repair::is_inside;
+use coeff_io::GlossRecord;
+use glam::Vec3;
+use scene::lightmap::{Charts, Texel, texels};
+use std::collections::BTreeMap;
+
+/// A sheet with what its rows hold.
+pub(crate) struct SheetPlan {
+    pub(crate) settings: SheetSettings,
+    pub(crate) layout: Layout,
+    pub(crate) texels: Vec<Texel>,
+}
+
+/// A sheet while it is worked on: the finest level first.
+pub(crate) struct BakedSheet {
+    pub(crate) layout: Layout,
+    pub(crate) levels: Vec<Plate>,
+}
+
+/// What is kept of a texel.
+struct Kept {
+    row: Vec<f32>,
+    is_inside: bool,
+    error: f32,
+    rays: [u64; 2],
+}
+
+/// The texels that surfaces touch, and what is kept of them.
+pub(crate) fn plan(done: &Done<'_>, settings: &TextureSettings, layout: &dyn Fn(bool) -> Layout) -> Vec<SheetPlan> {
+    let shines = crate::mirror::shining(done.scene);
+    let of = |sheet: &SheetSettings| {
+        let shiny = sheet.meshes.iter().any(|&mesh| shines[done.scene.meshes[mesh].material as usize]);
+        let texels = texels(done.scene, &sheet.meshes, sheet.width, sheet.height);
+        SheetPlan { settings: sheet.clone(), layout: layout(shiny), texels }
+    };
+    settings.sheets.iter().map(of).collect()
+}
+
+/// Bakes all sheets.
+pub(crate) fn bake(
+    done: &Done<'_>,
+    arrivals: &Arrivals<'_>,
+    maker: &RowMaker<'_>,
+    settings: &TextureSettings,
+    plans: &[SheetPlan],
+    record: &mut GlossRecord,
+) -> Result<Vec<BakedSheet>, Error> {
+    let mut plates = Vec::new();
+    let mut errors = Vec::new();
+    let mut first_index = 0u32;
+    for plan in plans {
+        let mut plate = gather(done, arrivals, maker, settings, plan, first_index, (record, &mut errors))?;
+        first_index = first_index.wrapping_add(plan.settings.width * plan.settings.height);
+        plate.mend();
+        record.unfilled += fill_from_vertices(done, maker, plan, &mut plate) as u64;
+        (0..settings.dilation.min(1)).for_each(|_| plate.dilate());
+        plates.push(plate);
+    }
+    if settings.stitch && settings.dilation > 0 {
+        stitch(done, plans, &mut plates);
+    }
+    errors.sort_by(f32::total_cmp);
+    let at = |share: f64| errors.get((errors.len().saturating_sub(1) as f64 * share) as usize).copied().unwrap_or(0.0);
+    record.error = [at(0.5), at(0.95), at(1.0)];
+    let finish = |(mut plate, plan): (Plate, &SheetPlan)| {
+        (1..settings.dilation).for_each(|_| plate.dilate());
+        let below = if settings.levels { levels::below(&plate, settings.dilation) } else { Vec::new() };
+        BakedSheet { layout: plan.layout, levels: std::iter::once(plate).chain(below).collect() }
+    };
+    Ok(plates.into_iter().zip(plans).map(finish).collect())
+}
+
+/// What arrives at the texels of one sheet.
+fn gather(
+    done: &Done<'_>,
+    arrivals: &Arrivals<'_>,
+    maker: &RowMaker<'_>,
+    settings: &TextureSettings,
+    plan: &SheetPlan,
+    first_index: u32,
+    (record, errors): (&mut GlossRecord, &mut Vec<f32>),
+) -> Result<Plate, Error> {
+    let sheet = &plan.settings;
+    let points: Vec<Receiver> = plan.texels.iter().map(|texel| receiver(done, texel)).collect();
+    let index = |k: usize| seed(first_index, plan, k);
+    let keep = |k: usize, arrival: Arrival| Kept {
+        row: maker.make(plan.layout, &arrival, lit_about(done, settings, &plan.texels[k], points[k].normal)),
+        is_inside: is_inside(arrival.openness, arrival.inside_share) || !points[k].sound,
+        error: arrival.error,
+        rays: [arrival.visibility_rays, arrival.bounce_rays],
+    };
+    let found = arrive_as(done, arrivals, (&points, Stage::Texels), &index, &keep)?;
+    let mut plate = Plate::empty([sheet.width as usize, sheet.height as usize], plan.layout.len());
+    let chart = charts(done, sheet);
+    record.texels += plan.texels.len() as u64;
+    for (texel, kept) in plan.texels.iter().zip(found) {
+        let place = texel.row as usize * plate.width + texel.column as usize;
+        record.rays = [record.rays[0] + kept.rays[0], record.rays[1] + kept.rays[1]];
+        if kept.is_inside {
+            plate.owner[place] = chart(texel);
+            record.inside += 1;
+            continue;
+        }
+        plate.add_slot(place, chart(texel));
+        plate.values.extend(kept.row);
+        errors.push(kept.error);
+    }
+    Ok(plate)
+}
+
+/// The seed of the rays of a texel of a sheet.
+pub(crate) fn seed(first_index: u32, plan: &SheetPlan, texel: usize) -> u32 {
+    let Texel { row, column, .. } = plan.texels[texel];
+    first_index.wrapping_add(row * plan.settings.width + column)
+}
+
+/// The normal that diffuse transfer is about: bent by the normal map where that is asked for.
+fn lit_about(done: &Done<'_>, settings: &TextureSettings, texel: &Texel, normal: Vec3) -> Vec3 {
+    if !settings.bent {
+        return normal;
+    }
+    let [u, v] = texel.barycentrics;
+    done.scene.bent_normal(texel.mesh as usize, texel.triangle as usize, u, v)
+}
+
+/// The chart of a texel, counted over all meshes of a sheet.
+fn charts(done: &Done<'_>, sheet: &SheetSettings) -> impl Fn(&Texel) -> u32 + use<> {
+    let mut of_mesh: BTreeMap<u32, (u32, Charts)> = BTreeMap::new();
+    let mut first = 0;
+    for &mesh in &sheet.meshes {
+        let charts = Charts::of(&done.scene.meshes[mesh]);
+        let count = charts.count;
+        of_mesh.insert(mesh as u32, (first, charts));
+        first += count;
+    }
+    move |texel| {
+        let (first, charts) = &of_mesh[&texel.mesh];
+        first + charts.of_triangle[texel.triangle as usize]
+    }
+}
+
+/// Gives texels whose chart has nothing to mend them with the diffuse transfer of the vertices around them. Returns how many there are.
+fn fill_from_vertices(done: &Done<'_>, maker: &RowMaker<'_>, plan: &SheetPlan, plate: &mut Plate) -> usize {
+    let mut filled = 0;
+    for texel in &plan.texels {
+        let place = texel.row as usize * plate.width + texel.column as usize;
+        if plate.slot_of[place] != NONE {
+            continue;
+        }
+        plate.add_slot(place, plate.owner[place]);
+        let start = plate.values.len();
+        plate.values.resize(start + plan.layout.len(), 0.0);
+        add_vertices(done, maker, texel, &mut plate.values[start..start + plan.layout.diffuse]);
+        filled += 1;
+    }
+    filled
+}
+
+fn add_vertices(done: &Done<'_>, maker: &RowMaker<'_>, texel: &Texel, row: &mut [f32]) {
+    let first: usize = done.scene.meshes[..texel.mesh as usize].iter().map(|mesh| mesh.positions.len()).sum();
+    let corners = done.scene.meshes[texel.mesh as usize].triangles[texel.triangle as usize];
+    let [u, v] = texel.barycentrics;
+    for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
+        for channel in 0..maker.channels {
+            let from = done.transfer.channel(first as u32 + corner, channel.min(done.transfer.channels - 1));
+            let out = row.iter_mut().skip(channel).step_by(maker.channels);
+            out.zip(from).for_each(|(sum, t)| *sum += share * t);
+        }
+    }
+}
+
+/// Makes both sides of seams agree, sheets of one layout among each other.
+fn stitch(done: &Done<'_>, plans: &[SheetPlan], plates: &mut [Plate]) {
+    let mut layouts: Vec<Layout> = plans.iter().map(|plan| plan.layout).collect();
+    layouts.dedup();
+    for layout in layouts {
+        let mut sheet_of_mesh = vec![None; done.scene.meshes.len()];
+        let mut own: Vec<&mut Plate> = Vec::new();
+        for (plan, plate) in plans.iter().zip(plates.iter_mut()).filter(|(plan, _)| plan.layout == layout) {
+            plan.settings.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(own.len() as u32));
+            own.push(plate);
+        }
+        stitch_all(done, &sheet_of_mesh, &mut own);
+    }
+}

@@ -1,0 +1,49 @@
+//! The options of transfer textures and gloss.
+
+use bake::Compression;
+
+/// How transfer textures and gloss are baked, as typed.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct GlossOptions {
+    /// Whether each object has a transfer texture of its own, or all share what their coordinates allow.
+    #[arg(long, value_enum, default_value_t = SheetSet::Object)]
+    pub(crate) sheets: SheetSet,
+    /// Leaves out the lower levels of detail of transfer textures.
+    #[arg(long)]
+    pub(crate) no_levels: bool,
+    /// Puts rows of transfer and visibility into clusters (clustered PCA), with this relative error at most; none keeps them as they are.
+    #[arg(long, value_name = "E", value_parser = share)]
+    pub(crate) compress: Option<f32>,
+    /// Relative error allowed to the clusters of glossy bounces that can be relit.
+    #[arg(long, value_name = "E", default_value_t = Compression::default().bounces, value_parser = share)]
+    pub(crate) bounce_error: f32,
+}
+
+/// How many sheets there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum SheetSet {
+    /// One for each mesh, by its share of the area.
+    Object,
+    /// As few as the coordinates allow.
+    Scene,
+}
+
+impl GlossOptions {
+    /// The compression asked for.
+    pub(crate) fn compression(&self) -> Compression {
+        Compression { rows: self.compress, bounces: self.bounce_error }
+    }
+
+    /// The first option of transfer textures alone that was typed.
+    pub(crate) fn typed_of_textures(&self) -> Option<&'static str> {
+        let options = [("--sheets", self.sheets != SheetSet::Object), ("--no-levels", self.no_levels)];
+        options.into_iter().find(|(_, is_typed)| *is_typed).map(|(name, _)| name)
+    }
+}
+
+fn share(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(value) if (1e-4..=1.0).contains(&value) => Ok(value),
+        _ => Err("give a relative error from 0.0001 to 1".into()),
+    }
+}
