@@ -58,7 +58,7 @@ pub(super) fn heads() -> Scene {
             coat("red lacquer", Vec3::new(0.48, 0.09, 0.06), BANDS),
         ],
         vec![
-            ground(0, 3.2, 12.0),
+            ground(0, 2.4, 10.0),
             head("first head", 1, DVec3::new(-1.0, -SUNK, -0.1), 0.35, |d| hairy(d, 13.0)),
             head("monkey", 2, DVec3::new(0.0, -SUNK, 0.35), 0.0, |d| swollen(d, MONKEY)),
             head("second head", 3, DVec3::new(1.0, -SUNK, -0.1), -0.35, |d| hairy(d, 22.0)),
@@ -66,7 +66,7 @@ pub(super) fn heads() -> Scene {
         pictures(),
         [
             camera(Vec3::new(0.0, 1.25, 3.9), Vec3::new(0.0, 0.58, 0.0), 31.0),
-            camera(Vec3::new(0.0, 2.35, 1.75), Vec3::new(0.0, 0.3, 0.1), 40.0),
+            camera(Vec3::new(0.0, 2.6, 1.05), Vec3::new(0.0, 0.35, 0.12), 39.0),
         ],
     )
 }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{Vec3, Vec3Swizzles};
 
 use super::{PAPER_SCENES, builtin};
+use crate::lightmap::{faults, share};
 use crate::{Camera, Mesh, Scene};
 
 /// Triangles of the paper's scenes (table 1), which these meet to 3 %.
@@ -89,7 +90,6 @@ fn they_are_as_large_as_the_papers() {
     assert_eq!(PAPER.map(|(name, _)| name).to_vec(), PAPER_SCENES.iter().map(|(name, _)| *name).collect::<Vec<_>>());
     for (name, expected) in PAPER {
         let triangles: usize = builtin(name).expect("listed").meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-        println!("{name}: {triangles}");
         assert!(triangles.abs_diff(expected) * 100 <= 3 * expected, "{name}: {triangles} triangles, not {expected}");
     }
     assert!(builtin("paper-nothing").is_none());
@@ -136,6 +136,15 @@ fn surfaces_carry_coordinates_and_shine_by_pictures() {
     });
     let floor = &builtin("paper-room").expect("listed").meshes[0];
     assert_eq!((floor.triangles.len(), floor.tangents.len()), (2, floor.positions.len()), "the floor has a normal map");
+}
+
+#[test]
+fn what_brings_a_sheet_brings_a_good_one() {
+    let mut dragon = builtin("paper-dragon").expect("listed");
+    assert_eq!(faults(&dragon, &[0, 1]), Vec::new());
+    assert!(dragon.meshes.iter().map(share).sum::<f64>() > 0.8, "the sheet is filled");
+    dragon.meshes[0].uv1.iter_mut().for_each(|uv| *uv += 0.3);
+    assert!(!faults(&dragon, &[0, 1]).is_empty(), "the test can fail");
 }
 
 #[test]
