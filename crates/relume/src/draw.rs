@@ -145,5 +145,6 @@ fn for_gpu(frame: &Frame) -> render_wgpu::Frame {
         albedo: frame.albedo,
         basis: frame.basis,
         functions: frame.functions,
+        gloss: frame.gloss,
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::columns::{Columns, Side, bytes, count};
 use crate::console::Console;
+use crate::inspect_gloss::{surfaces_json, surfaces_text};
 use crate::inspect_maps::{maps_json, maps_text, volume_json, volume_text};
 use anyhow::{Context, Result, bail};
 use coeff_io::{Chunk, EffectCost, Inspection, Kind};
@@ -71,6 +72,7 @@ fn as_json(seen: &Inspection, sums: &[u32]) -> String {
         "chunks": seen.chunks.iter().zip(sums).map(chunk).collect::<Vec<_>>(),
         "maps": seen.header.maps.as_ref().map(|maps| maps_json(maps, seen)),
         "volume": seen.header.volume.as_ref().map(|volume| volume_json(volume, seen)),
+        "gloss": surfaces_json(seen),
         "header": seen.header,
     });
     format!("{value:#}")
@@ -136,6 +138,9 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
     if let Some(volume) = &header.volume {
         row("volume", volume_text(volume, seen))?;
     }
+    if let Some(text) = surfaces_text(seen) {
+        row("gloss", text)?;
+    }
     row(
         "asked for",
         format!(
@@ -152,6 +157,9 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
     row("rays", format!("{} visibility, {} bounce", achieved.visibility_rays, achieved.bounce_rays))?;
     if let Some(maps) = &achieved.maps {
         row("maps", crate::bake::light_maps(maps, settings.quality))?;
+    }
+    if let Some(gloss) = &achieved.gloss {
+        row("textures", crate::bake::gloss_text(gloss, settings.quality))?;
     }
     row("bounces", format!("{}, which changed {:?}", achieved.bounces, achieved.bounce_changes))?;
     let repairs = achieved.repairs;

@@ -2,6 +2,7 @@
 
 use crate::console::Console;
 use crate::draw::{Backend, Drawer, Window};
+use crate::gloss_look::{self, GlossOptions};
 use crate::lens::{self, Lens};
 use crate::look::{self, LookOptions};
 use crate::output;
@@ -25,10 +26,12 @@ Examples:
   relume render hall.prt --probe builtin:sky --visitor suzanne.prt --at 0,1,0,0.5 --to 4,1,0 --frames 24 -o walk.png
   relume render hall.prt --probe builtin:sky --basis hl2 -o hall-hl2.png
   relume render hall.prt --probe builtin:sky --basis modified-h6 --functions 1 --albedo off -o hall-flat.png
+  relume render lobby.prt --probe kitchen.hdr --lobe phong --exponent 20 --way tpfl -o lobby.png
 
 The fourth writes turn-0000.png to turn-0035.png, the light turned by 10 degrees each, and tells the time per frame. The fifth moves an object through the
-scene's irradiance volume. The last two draw
-light maps: in another basis than they were baked in, and one function of six as an ordinary light map, without the surfaces' colours.";
+scene's irradiance volume. The next two draw
+light maps: in another basis than they were baked in, and one function of six as an ordinary light map, without the surfaces' colours. The last
+mirrors with one Phong lobe.";
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -69,6 +72,8 @@ pub(crate) struct Options {
     #[command(flatten)]
     look: LookOptions,
     #[command(flatten)]
+    gloss: GlossOptions,
+    #[command(flatten)]
     visitor: VisitorOptions,
     /// Draws N pictures, the light turned by 360/N degrees from one to the next; with --to, a visitor on its way instead.
     #[arg(long, value_name = "N")]
@@ -107,6 +112,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         albedo: options.look.albedo(),
         basis: options.look.basis,
         functions: options.look.functions,
+        gloss: options.gloss.view(),
     };
     // Of a turn the second frame, too, before anything is written.
     let count = options.frames.map_or(1, NonZeroU32::get);
@@ -114,6 +120,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         frame.check_for(&prt).map_err(|error| crate::usage::Usage(error.to_string()))?;
     }
     look::tell(&prt, &options.probe.name(), &options.look, console);
+    gloss_look::tell(&prt, &frame.gloss, console);
     let environment = options.probe.load(console)?;
     if let (Some(count), Some(visitor)) = (options.frames, visitor.as_ref().filter(|visitor| visitor.moves())) {
         drop(prt);

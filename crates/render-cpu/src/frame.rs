@@ -39,6 +39,8 @@ pub struct Frame {
     pub basis: Option<Basis>,
     /// How many functions of that basis are drawn; all where it is none.
     pub functions: Option<u32>,
+    /// How surfaces that shine are drawn.
+    pub gloss: coeff_io::GlossView,
 }
 
 /// Curve from scene-referred values to display values in [0, 1], per channel.
@@ -69,6 +71,7 @@ impl Frame {
             albedo: true,
             basis: None,
             functions: None,
+            gloss: coeff_io::GlossView::default(),
         }
     }
 

@@ -35,6 +35,8 @@ pub struct Frame {
     pub basis: Option<Basis>,
     /// How many functions of that basis are drawn; all where it is none.
     pub functions: Option<u32>,
+    /// How surfaces that shine are drawn.
+    pub gloss: coeff_io::GlossView,
 }
 
 impl Frame {
@@ -55,6 +57,7 @@ impl Frame {
             albedo: true,
             basis: None,
             functions: None,
+            gloss: coeff_io::GlossView::default(),
         }
     }
 
