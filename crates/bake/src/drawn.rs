@@ -76,7 +76,15 @@ pub(crate) fn glossy(table: &Table<'_>) -> PlanRow {
             ),
         },
     };
-    table.row(Effect::Glossy, d.glossy, &f.shiny, words)
+    let row = table.row(Effect::Glossy, d.glossy, &f.shiny, words);
+    if !d.glossy {
+        return row;
+    }
+    // What mirrors see is found for the light on its way and again with what blocks; half precision.
+    let receivers = f.shiny_receivers() as f64;
+    let rays = receivers * table.rays_of_receiver() * f64::from(2.0 + table.survey.coverage[0]);
+    let bands = d.bands.min(crate::mirror::MOST_BANDS);
+    PlanRow { rays: rays as u64, bytes: 2 * f.shiny_receivers() * u64::from(bands * bands), ..row }
 }
 
 pub(crate) fn normal_maps(table: &Table<'_>) -> PlanRow {

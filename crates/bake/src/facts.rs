@@ -121,6 +121,11 @@ impl Facts {
         }
     }
 
+    /// Receivers at vertices of surfaces that shine.
+    pub(crate) fn shiny_receivers(&self) -> u64 {
+        self.meshes.iter().filter(|mesh| self.materials[mesh.material].shines).map(|mesh| mesh.receivers).sum()
+    }
+
     /// Largest reflectance at normal incidence of a material that shines.
     pub(crate) fn reflectance(&self) -> f32 {
         self.materials.iter().filter(|m| m.shines).map(|m| m.reflectance).fold(0.0, f32::max)

@@ -102,11 +102,15 @@ impl Table<'_> {
     }
 
     fn visibility_rays(&self) -> u64 {
-        let per_receiver = match self.settings.quality {
+        (self.decisions.traced as f64 * self.rays_of_receiver()) as u64
+    }
+
+    /// Rays that tell what a receiver sees.
+    pub(crate) fn rays_of_receiver(&self) -> f64 {
+        match self.settings.quality {
             Quality::Rays(n) => f64::from(n),
             Quality::Error(e) => RAYS_PER_BAND * f64::from(self.decisions.bands) * f64::from(0.01 / e).max(0.05),
-        };
-        (self.decisions.traced as f64 * per_receiver) as u64
+        }
     }
 
     fn interreflection(&self) -> PlanRow {

@@ -5,7 +5,7 @@ use crate::usage::Usage;
 use anyhow::Result;
 use bake::SheetSettings;
 use scene::Scene;
-use scene::lightmap::{self, Density, FaultKind, Unwrap};
+use scene::lightmap::{self, Density, FaultKind, ObjectOptions, Unwrap};
 
 /// Share of a sheet that unwrapped surfaces are taken to fill, to foresee its size.
 const FILLED: f64 = 0.6;
@@ -50,33 +50,12 @@ impl SheetChoice {
     pub(crate) fn per_object(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
         self.check_names(scene)?;
         let meshes = self.meshes(scene);
-        let all: f64 = meshes.iter().map(|&mesh| area(scene, mesh)).sum();
-        let share = |scene: &Scene, mesh: usize| (area(scene, mesh) / all.max(f64::MIN_POSITIVE)).sqrt();
-        let mut sheets = Vec::new();
-        for mesh in meshes {
-            let side = ((f64::from(self.texels) * share(scene, mesh)).round() as u32).clamp(SMALLEST, self.texels);
-            let faults = lightmap::faults(scene, &[mesh]);
-            let serves = !self.unwrap
-                && !scene.meshes[mesh].uv1.is_empty()
-                && faults.iter().all(|fault| fault.kind == FaultKind::Flat);
-            let size = match serves {
-                true => [side; 2],
-                false => self.unwrap_alone(scene, mesh, side, console)?,
-            };
-            sheets.push(sheet(scene, vec![mesh], size));
-        }
-        Ok(sheets)
-    }
-
-    /// Unwraps one mesh into a sheet of so many texels along a side, or of twice as many until its charts fit.
-    fn unwrap_alone(&self, scene: &mut Scene, mesh: usize, side: u32, console: &Console) -> Result<[u32; 2]> {
-        let mut side = side;
-        loop {
-            match self.unwrap_group(scene, &[mesh], Density::Side(side), console) {
-                Err(_) if side < self.texels => side = (2 * side).min(self.texels),
-                other => return other,
-            }
-        }
+        let options = ObjectOptions { texels: self.texels, padding: self.padding, unwrap: self.unwrap };
+        let progress = console.progress();
+        let found =
+            lightmap::objects(scene, &meshes, &options, &|stage, done, total| progress.set(stage, done, total))?;
+        drop(progress);
+        Ok(found.into_iter().map(|object| sheet(scene, vec![object.mesh], [object.width, object.height])).collect())
     }
 
     fn check_names(&self, scene: &Scene) -> Result<()> {

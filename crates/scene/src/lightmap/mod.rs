@@ -6,12 +6,14 @@
 mod chart;
 mod cover;
 mod fault;
+mod objects;
 mod seam;
 mod texel;
 mod unwrap;
 
 pub use chart::Charts;
 pub use fault::{Fault, FaultKind, faults, share};
+pub use objects::{ObjectOptions, ObjectSheet, objects};
 pub use seam::{Seam, SeamSide, seams};
 pub use texel::{Texel, texels};
 pub use unwrap::{Atlas, Density, Unwrap, UnwrapError, unwrap};
