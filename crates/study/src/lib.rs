@@ -3,4 +3,5 @@
 pub mod bases;
 pub mod cost;
 mod front;
+pub mod paper;
 pub mod plot;
