@@ -67,5 +67,6 @@ pub(crate) fn cpu_frame(frame: &Frame) -> render_cpu::Frame {
         albedo: frame.albedo,
         basis: frame.basis,
         functions: frame.functions,
+        gloss: frame.gloss,
     }
 }
