@@ -1,12 +1,15 @@
 //! The colour of a surface at one sample: docs/shading.md, "Surface, per sample".
 
 use crate::brdf::reflectance;
+use crate::gloss::{Arrived, Gloss, Ray, Reflected, Source};
+use crate::lit::{LitSheet, Taps};
 use crate::map::Sheet;
 use crate::texture::{Encoding, SrgbTable, coordinates, read};
 use coeff_io::{AlphaMode, Material, Prt, TextureSlot};
 use glam::{Quat, Vec3, Vec4};
 use probe_io::Environment;
 use probe_io::reflection::Reflection;
+use std::ops::{Add, Mul};
 
 /// Everything that the colour of a sample depends on.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +21,10 @@ pub(crate) struct Shader<'a> {
     pub(crate) srgb: &'a SrgbTable,
     /// Diffuse radiance for albedo 1, per vertex.
     pub(crate) radiance: &'a [Vec3],
+    /// The lobe; present where the file tells what arrives at surfaces.
+    pub(crate) gloss: Option<&'a Gloss>,
+    /// The finest level of transfer textures that is shown.
+    pub(crate) finest: u32,
     pub(crate) light_from_world: Quat,
     pub(crate) sky: bool,
     /// Whether surfaces have colours of their own.
@@ -30,10 +37,16 @@ pub(crate) struct Place<'a> {
     pub(crate) material: &'a Material,
     /// The light map here, if there is one.
     pub(crate) sheet: Option<&'a Sheet>,
+    /// The transfer texture here, if there is one.
+    pub(crate) texels: Option<&'a LitSheet>,
+    /// Where what arrives is found; none where that is not known.
+    pub(crate) source: Option<Source<'a>>,
     pub(crate) vertices: [usize; 3],
     pub(crate) weights: [f32; 3],
     /// From the eye, not unit.
     pub(crate) direction: Vec3,
+    /// Height of the sample at its view depth, metres.
+    pub(crate) footprint: f32,
 }
 
 /// What a surface sends to the eye, and how much of what lies behind it covers.
@@ -49,6 +62,13 @@ pub(crate) struct Surface {
     pub(crate) opacity: f32,
 }
 
+/// How a sample of a surface reflects.
+struct Finish {
+    color: Vec3,
+    metallic: f32,
+    roughness: f32,
+}
+
 impl Surface {
     /// The sample's colour over what lies behind.
     pub(crate) fn over(&self, behind: Vec3) -> Vec3 {
@@ -62,6 +82,13 @@ impl Place<'_> {
         let [a, b, c] = self.vertices.map(|v| values[v]);
         let [wa, wb, wc] = self.weights;
         std::array::from_fn(|k| a[k] * wa + b[k] * wb + c[k] * wc)
+    }
+
+    /// What was evaluated per vertex, at this place.
+    fn between<T: Copy + Add<Output = T> + Mul<f32, Output = T>>(&self, values: &[T]) -> T {
+        let [a, b, c] = self.vertices.map(|v| values[v]);
+        let [wa, wb, wc] = self.weights;
+        a * wa + b * wb + c * wc
     }
 }
 
@@ -82,11 +109,15 @@ impl Shader<'_> {
         let metallic = if self.albedo { (material.metallic * shine.z).clamp(0.0, 1.0) } else { 0.0 };
         let roughness = (material.roughness * shine.y).clamp(0.0, 1.0);
         let color = if self.albedo { base.truncate() } else { Vec3::ONE };
-        let diffuse = self.light(place).max(Vec3::ZERO) * color * (1.0 - metallic);
+        let taps = self.taps(place);
+        let diffuse = self.light(place, taps.as_ref()).max(Vec3::ZERO) * color * (1.0 - metallic);
         let glow = self.texel(material.emissive_texture.as_ref(), place, Encoding::Srgb(self.srgb)).truncate();
         let emission = Vec3::from(material.emissive) * glow;
         let specular = match self.reflection {
-            Some(reflection) if material.specular => self.specular(place, reflection, color, metallic, roughness),
+            Some(reflection) if material.specular => {
+                let finish = Finish { color, metallic, roughness };
+                self.specular(place, reflection, &finish, taps.as_ref())
+            }
             _ => Vec3::ZERO,
         };
         let coverage = if material.alpha == AlphaMode::Blend { base.w.clamp(0.0, 1.0) } else { 1.0 };
@@ -103,18 +134,24 @@ impl Shader<'_> {
         }
     }
 
-    /// Diffuse radiance for albedo 1, not clamped: from the light map where there is one, else from the vertices.
-    fn light(&self, place: &Place<'_>) -> Vec3 {
+    /// The texels around a place, where there is a transfer texture.
+    fn taps(&self, place: &Place<'_>) -> Option<Taps> {
+        let sheet = place.texels?;
+        let uv = coordinates(&self.prt.geometry, 1, place.vertices, place.weights);
+        Some(sheet.taps(uv, sheet.detail(place.footprint, self.finest)))
+    }
+
+    /// Diffuse radiance for albedo 1, not clamped: from the texture or light map where there is one, else from the vertices.
+    fn light(&self, place: &Place<'_>, taps: Option<&Taps>) -> Vec3 {
+        if let (Some(sheet), Some(taps)) = (place.texels, taps) {
+            return sheet.diffuse(taps);
+        }
         match place.sheet {
             Some(sheet) => {
                 let uv = coordinates(&self.prt.geometry, 1, place.vertices, place.weights);
                 sheet.radiance(uv, self.bend(place).and_then(unit).unwrap_or(Vec3::Z))
             }
-            None => {
-                let [a, b, c] = place.vertices.map(|v| self.radiance[v]);
-                let [wa, wb, wc] = place.weights;
-                a * wa + b * wb + c * wc
-            }
+            None => place.between(self.radiance),
         }
     }
 
@@ -134,13 +171,26 @@ impl Shader<'_> {
         })
     }
 
-    fn specular(&self, place: &Place<'_>, reflection: &Reflection, base: Vec3, metallic: f32, roughness: f32) -> Vec3 {
+    fn specular(&self, place: &Place<'_>, reflection: &Reflection, finish: &Finish, taps: Option<&Taps>) -> Vec3 {
         let normal = self.normal(place);
         let to_eye = -place.direction.normalize();
         let cosine = normal.dot(to_eye);
         let mirrored = normal * (2.0 * cosine) - to_eye;
-        let arriving = Vec3::from(reflection.sample(self.light_from_world * mirrored, roughness));
-        arriving * reflectance(base, metallic, roughness, cosine.abs().min(1.0)) * self.occlusion(place)
+        let arrived = match place.source {
+            Some(Source::Texels(sheet)) => taps.map(|taps| Arrived::Texels(sheet, taps)),
+            Some(Source::Vertices(vertices)) => Some(Arrived::Interpolated(place.between(vertices))),
+            None => None,
+        };
+        let light = Reflected { reflection, light_from_world: self.light_from_world };
+        let (radiance, roughness) = match (self.gloss, arrived) {
+            (Some(gloss), Some(arrived)) => {
+                let roughness = gloss.roughness(finish.roughness);
+                let ray = Ray { mirrored, smooth: self.smooth(place), roughness };
+                (gloss.mirrored(&ray, &light, arrived), roughness)
+            }
+            _ => (light.along(mirrored, finish.roughness) * self.occlusion(place), finish.roughness),
+        };
+        radiance * reflectance(finish.color, finish.metallic, roughness, cosine.abs().min(1.0))
     }
 
     fn occlusion(&self, place: &Place<'_>) -> f32 {
@@ -165,6 +215,12 @@ impl Shader<'_> {
             None => smooth,
         };
         unit(bent).or_else(|| unit(smooth)).unwrap_or_else(|| self.geometric_normal(place))
+    }
+
+    /// The unit normal without the normal map.
+    fn smooth(&self, place: &Place<'_>) -> Vec3 {
+        let smooth = Vec3::from(place.interpolate(&self.prt.geometry.normals));
+        unit(smooth).unwrap_or_else(|| self.geometric_normal(place))
     }
 
     /// What the normal map says in the tangent frame, not unit; none where there is no map or no tangents.

@@ -1,6 +1,8 @@
 //! Drawing one tile: depth first, then colours, then what lets light through.
 
 use crate::facet::Facet;
+use crate::gloss::{Receivers, Source};
+use crate::lit::LitSheet;
 use crate::map::Sheet;
 use crate::raster::{Piece, Window};
 use crate::shade::{Place, Shader};
@@ -22,6 +24,8 @@ pub(crate) struct Stage<'a> {
     pub(crate) materials: &'a [u32],
     /// Light map of each triangle; `None` where no mesh has one.
     pub(crate) maps: Option<(&'a [u32], &'a [Sheet])>,
+    /// Texels and vertices that are more than vertices; none where the file has no such.
+    pub(crate) receivers: Option<Receivers<'a>>,
 }
 
 /// The samples of a tile: depth, the nearest triangle, colour.
@@ -40,6 +44,8 @@ struct Held<'a> {
     vertices: [usize; 3],
     material: &'a Material,
     sheet: Option<&'a Sheet>,
+    texels: Option<&'a LitSheet>,
+    source: Option<Source<'a>>,
 }
 
 impl<'a> Stage<'a> {
@@ -107,17 +113,25 @@ impl<'a> Stage<'a> {
         let vertices = prt.geometry.triangles[triangle as usize].map(|v| v as usize);
         let material = &prt.materials[self.materials[triangle as usize] as usize];
         let sheet = self.maps.and_then(|(of_triangle, sheets)| sheets.get(of_triangle[triangle as usize] as usize));
-        Held { triangle, facet: Facet::new(vertices.map(|v| self.projected[v])), vertices, material, sheet }
+        let (texels, source) = self.receivers.map_or((None, None), |receivers| receivers.of(prt, triangle));
+        let facet = Facet::new(vertices.map(|v| self.projected[v]));
+        Held { triangle, facet, vertices, material, sheet, texels, source }
     }
 
     fn place(&self, held: &Held<'a>, column: u32, row: u32) -> Place<'a> {
         let centre = self.view.centre(column, row);
+        let weights = held.facet.weights(centre);
+        let depths = held.vertices.map(|v| self.projected[v].z as f32);
+        let depth: f32 = depths.iter().zip(weights).map(|(depth, weight)| depth * weight).sum();
         Place {
             material: held.material,
             sheet: held.sheet,
+            texels: held.texels,
+            source: held.source,
             vertices: held.vertices,
-            weights: held.facet.weights(centre),
+            weights,
             direction: self.view.direction(centre),
+            footprint: depth * self.view.spread(),
         }
     }
 }

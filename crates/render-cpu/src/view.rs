@@ -49,6 +49,11 @@ impl View {
         }
     }
 
+    /// Height of a sample at depth 1.
+    pub(crate) fn spread(&self) -> f32 {
+        (2.0 * self.tangent.y / f64::from(self.samples[1])) as f32
+    }
+
     /// A world point in projective space.
     pub(crate) fn project(&self, position: [f32; 3]) -> DVec3 {
         let p = vector(position) - self.eye;
