@@ -26,7 +26,7 @@ fn a_bake_tells_what_it_holds() {
     assert!(plan["plan"]["receivers"].as_u64().unwrap() > 0);
     assert!(plan["light"]["lamps"].as_u64().unwrap() > 0);
     let rows = plan["plan"]["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 10);
+    assert_eq!(rows.len(), 11);
     assert!(rows.iter().all(|row| row["seconds"].is_number() && row["at_stake"].is_string()), "{rows:?}");
     assert!(plan["seconds"]["together"].as_f64().unwrap() > 0.0 && plan["plan"]["meshes"][0]["name"].is_string());
     let bake = ["bake", "builtin:half-blocked-plane", "-o", "a.prt", "--bands", "3", "--rays", "64", "--seed", "5"];
