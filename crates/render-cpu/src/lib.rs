@@ -20,6 +20,7 @@ mod map;
 mod raster;
 mod renderer;
 mod shade;
+mod surfaces;
 mod texture;
 mod tile;
 mod tone;

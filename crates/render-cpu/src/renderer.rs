@@ -1,13 +1,12 @@
 //! A baked scene under a probe, ready to draw frames.
 
 use crate::bins::{Bins, Tiles};
-use crate::gloss::{Gloss, Receivers};
 use crate::image::Image;
 use crate::light::vertex_radiance;
-use crate::lit::LitSurfaces;
 use crate::map::LitMaps;
 use crate::raster::{Piece, Window, pieces};
 use crate::shade::Shader;
+use crate::surfaces::Surfaces;
 use crate::texture::SrgbTable;
 use crate::tile::{Canvas, Stage};
 use crate::tone::Quantiser;
@@ -18,7 +17,6 @@ use glam::{DVec3, Quat, Vec3};
 use probe_io::Environment;
 use probe_io::reflection::Reflection;
 use rayon::prelude::*;
-use sh_math::light_matrix::LightProduct;
 use sh_math::{Bands, hemisphere::Basis};
 use std::sync::{Arc, Mutex};
 
@@ -49,12 +47,8 @@ pub struct Renderer<'a> {
     sheets: Vec<u32>,
     /// The maps under the light of the last frame.
     lit_maps: Mutex<Option<Arc<LitMaps>>>,
-    /// The mesh of each triangle; empty where neither texels nor vertices know what arrives.
-    meshes: Vec<u32>,
-    /// Products of light and visibility; none where no surface knows what arrives.
-    product: Option<LightProduct>,
-    /// Texels and vertices that shine under the light of the last frame.
-    lit_surfaces: Mutex<Option<Arc<LitSurfaces>>>,
+    /// Texels and vertices that know what arrives.
+    surfaces: Surfaces,
     /// Length of the diagonal of the box around all positions.
     diagonal: f64,
 }
@@ -89,9 +83,7 @@ impl<'a> Renderer<'a> {
             materials: materials(prt),
             sheets: map::sheet_of_triangle(prt),
             lit_maps: Mutex::default(),
-            meshes: meshes(prt),
-            product: prt.gloss.as_ref().and_then(|gloss| Bands::new(gloss.bands)).map(LightProduct::new),
-            lit_surfaces: Mutex::default(),
+            surfaces: Surfaces::new(prt),
             diagonal: diagonal(&prt.geometry.positions),
         })
     }
@@ -106,7 +98,7 @@ impl<'a> Renderer<'a> {
     pub fn set_light(&mut self, light: sh_math::Rgb) {
         self.light = light;
         self.lit_maps = Mutex::default();
-        self.lit_surfaces = Mutex::default();
+        self.surfaces.forget();
     }
 
     /// Number of levels of the probe blurred for reflections: 0 where no surface mirrors it.
@@ -127,13 +119,7 @@ impl<'a> Renderer<'a> {
         let light = self.light.rotated(rotation);
         let radiance = vertex_radiance(&self.prt.transfer, &light.with_bands(self.bands).values);
         let maps = basis.map(|basis| self.maps_under(&light, rotation, basis));
-        let lit = (!self.meshes.is_empty()).then(|| self.surfaces_under(&light, rotation));
-        let gloss = self.product.as_ref().map(|product| Gloss::new(product.bands(), frame.gloss, &light));
-        let eye = Vec3::from(frame.camera.eye);
-        let glossy = match (&gloss, &lit) {
-            (Some(gloss), Some(lit)) => gloss.at_vertices(self.prt, lit, eye),
-            _ => Vec::new(),
-        };
+        let drawn = self.surfaces.draw(self.prt, &light, rotation, frame.gloss, frame.camera.eye);
         let projected: Vec<DVec3> = self.prt.geometry.positions.par_iter().map(|&p| view.project(p)).collect();
         let shader = Shader {
             prt: self.prt,
@@ -141,14 +127,14 @@ impl<'a> Renderer<'a> {
             reflection: self.reflection.as_ref(),
             srgb: &self.srgb,
             radiance: &radiance,
-            gloss: gloss.as_ref(),
+            gloss: drawn.gloss.as_ref(),
             finest: frame.gloss.level,
             light_from_world: rotation.inverse(),
             sky: frame.sky,
             albedo: frame.albedo,
         };
         let maps = maps.as_ref().map(|maps| (self.sheets.as_slice(), maps.sheets.as_slice()));
-        let receivers = lit.as_ref().map(|lit| Receivers { meshes: &self.meshes, lit, vertices: &glossy });
+        let receivers = drawn.receivers();
         let stage = Stage { shader, view: &view, projected: &projected, materials: &self.materials, maps, receivers };
         let mut linear = self.tiles(&stage, frame);
         let exposure = libm::exp2f(frame.exposure_ev);
@@ -166,16 +152,6 @@ impl<'a> Renderer<'a> {
         match held.take().filter(|maps| maps.rotation == rotation && maps.basis == basis) {
             Some(maps) => held.insert(maps).clone(),
             None => held.insert(Arc::new(LitMaps::new(self.prt, light, rotation, basis))).clone(),
-        }
-    }
-
-    /// The receivers under the turned light: those of the last frame where it has not turned since.
-    fn surfaces_under(&self, light: &sh_math::Rgb, rotation: Quat) -> Arc<LitSurfaces> {
-        // A panic elsewhere leaves whole surfaces or none.
-        let mut held = self.lit_surfaces.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        match held.take().filter(|lit| lit.rotation == rotation) {
-            Some(lit) => held.insert(lit).clone(),
-            None => held.insert(Arc::new(LitSurfaces::new(self.prt, self.product.as_ref(), light, rotation))).clone(),
         }
     }
 
@@ -242,20 +218,6 @@ fn materials(prt: &Prt) -> Vec<u32> {
     for mesh in &prt.meshes {
         let first = mesh.first_triangle as usize;
         out[first..first + mesh.triangles as usize].fill(mesh.material);
-    }
-    out
-}
-
-/// The mesh of each triangle, where texels or vertices know what arrives.
-fn meshes(prt: &Prt) -> Vec<u32> {
-    let vertices = prt.gloss.as_ref().is_some_and(|gloss| gloss.vertices.is_some());
-    if !vertices && prt.transfer_textures.is_none() {
-        return Vec::new();
-    }
-    let mut out = vec![0; prt.geometry.triangles.len()];
-    for (index, mesh) in (0..).zip(&prt.meshes) {
-        let first = mesh.first_triangle as usize;
-        out[first..first + mesh.triangles as usize].fill(index);
     }
     out
 }
