@@ -1,6 +1,8 @@
 //! Baked scenes made by hand: the transfer is written out, nothing is traced.
 #![allow(dead_code, reason = "each test uses its part")]
 
+pub(crate) mod gloss;
+
 use coeff_io::{
     Achieved, AlphaMode, BandChoice, Bounces, Camera, Codebooks, Effects, Geometry, Material, Mesh, Plan, Prt, Quality,
     Refine, Sampler, Settings, Transfer,
