@@ -1,19 +1,26 @@
 //! An independent path tracer: the ground truth that baked transfer is judged by.
 //!
-//! Diffuse, two-sided transport under distant light, by plain paths: next-event estimation towards picture and lamps,
-//! combined with cosine-sampled directions. No spherical harmonics, no interpolation between vertices, no code
+//! Two-sided transport under distant light, by plain paths: next-event estimation towards picture and lamps, combined with directions
+//! that are drawn by the surface. Diffuse, unless a world is given a [`Gloss`]. No spherical harmonics, no interpolation between vertices, no code
 //! shared with the baker. What it draws is the same: both sides of a surface block and reflect; surfaces that blend
 //! or transmit do not stop light; emission is seen by the camera but lights nothing.
 
 mod camera;
+mod gloss;
 mod light;
+mod lobe;
+mod microfacet;
+mod mirror;
 mod path;
 mod receiver;
 mod render;
+mod shiny;
 mod world;
 
+pub use gloss::{Gloss, Lobe, Mirroring};
 pub use light::Light;
-pub use receiver::{Estimate, Receiver, radiance_at};
+pub use microfacet::directional_albedo;
+pub use receiver::{Estimate, Gaze, Receiver, radiance_at, radiance_seen};
 pub use render::{Picture, render};
 pub use world::World;
 

@@ -1,5 +1,6 @@
-//! One path: the light that leaves a diffuse surface, estimated once without bias.
+//! One path: the light that leaves a surface, estimated once without bias.
 
+use crate::shiny::{Rule, reflect};
 use crate::world::Surface;
 use crate::{Light, World};
 use glam::Vec3;
@@ -13,54 +14,80 @@ const SURE_BOUNCES: u32 = 3;
 /// Highest chance to go on: paths end even where nothing absorbs.
 const MAX_SURVIVAL: f32 = 0.95;
 
+/// What a path has gathered so far.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Gathered {
+    /// Radiance at the start of the path per radiance that leaves the present surface; its albedo is in it where it is matte.
+    pub(crate) throughput: Vec3,
+    /// Radiance.
+    pub(crate) sum: Vec3,
+}
+
 /// Radiance that leaves `surface`, after up to `max_bounces` reflections on other surfaces.
 ///
 /// Each surface on the path adds the light that reaches it straight: from lamps by a direction to each, from the
 /// picture by two directions, one drawn by radiance and one by the cosine, weighted by the balance heuristic. The
-/// second one carries the path on where it hits something.
+/// second one carries the path on where it hits something. What mirrors has another way, [`reflect`].
 pub(crate) fn outgoing(world: &World, light: &Light, start: Surface, max_bounces: Option<u32>, rng: &mut Rng) -> Vec3 {
     let mut surface = start;
-    let mut throughput = start.albedo;
-    let mut sum = Vec3::ZERO;
+    let mut path = Gathered { throughput: own_albedo(&start), sum: Vec3::ZERO };
     let mut bounce = 0;
-    while throughput.max_element() > 0.0 {
-        sum += throughput * (from_lamps(world, light, &surface, rng) + from_image(world, light, &surface, rng));
-
-        let local = square_to_cosine_concentric(rng.next_square());
-        let direction = Frame::from_normal(surface.normal).to_world(local).normalize();
-        if surface.is_below(direction) {
-            break;
-        }
-        let step = if max_bounces == Some(bounce) {
-            last_step(world, surface.origin, direction)
-        } else {
-            world.closest(surface.origin, direction).map_or(Step::Sky, Step::Surface)
+    while path.throughput.max_element() > 0.0 {
+        let last = max_bounces == Some(bounce);
+        let next = match &surface.mirror {
+            None => scatter(world, light, &surface, last, &mut path, rng),
+            Some(mirror) => reflect(world, light, (&surface, mirror), last, Rule::Both, &mut path, rng),
         };
-        match step {
-            Step::Blocked => break,
-            Step::Sky => {
-                let (radiance, light_pdf) = light.image.look(direction);
-                let pdf = cosine_concentric_pdf(local);
-                sum += throughput * radiance * (pdf / (pdf + light_pdf));
-                break;
-            }
-            Step::Surface(next) => surface = next,
-        }
-        throughput *= surface.albedo;
+        let Some(next) = next else { break };
+        surface = next;
+        path.throughput *= own_albedo(&surface);
         bounce += 1;
         if max_bounces.is_none() && bounce > SURE_BOUNCES {
-            let survival = throughput.max_element().min(MAX_SURVIVAL);
+            let survival = path.throughput.max_element().min(MAX_SURVIVAL);
             if rng.next_f32() >= survival {
                 break;
             }
-            throughput /= survival;
+            path.throughput /= survival;
         }
     }
-    sum
+    path.sum
+}
+
+/// The factor of a matte surface for light from anywhere.
+fn own_albedo(surface: &Surface) -> Vec3 {
+    if surface.mirror.is_some() { Vec3::ONE } else { surface.albedo }
+}
+
+/// Light of a matte surface, and where the path goes on.
+fn scatter(
+    world: &World,
+    light: &Light,
+    surface: &Surface,
+    last: bool,
+    path: &mut Gathered,
+    rng: &mut Rng,
+) -> Option<Surface> {
+    path.sum += path.throughput * (from_lamps(world, light, surface, rng) + from_image(world, light, surface, rng));
+
+    let local = square_to_cosine_concentric(rng.next_square());
+    let direction = Frame::from_normal(surface.normal).to_world(local).normalize();
+    if surface.is_below(direction) {
+        return None;
+    }
+    match step(world, surface.origin, direction, last) {
+        Step::Blocked => None,
+        Step::Sky => {
+            let (radiance, light_pdf) = light.image.look(direction);
+            let pdf = cosine_concentric_pdf(local);
+            path.sum += path.throughput * radiance * (pdf / (pdf + light_pdf));
+            None
+        }
+        Step::Surface(next) => Some(next),
+    }
 }
 
 /// Where a path goes next.
-enum Step {
+pub(crate) enum Step {
     /// On to another surface.
     Surface(Surface),
     /// Out, to the picture.
@@ -69,9 +96,15 @@ enum Step {
     Blocked,
 }
 
-/// The step after the last bounce needs only to know whether it leaves the scene.
-fn last_step(world: &World, origin: Vec3, direction: Vec3) -> Step {
-    if world.occluded(origin, direction) { Step::Blocked } else { Step::Sky }
+/// Follows a ray of light back. The step after the last bounce needs only to know whether it leaves the scene.
+pub(crate) fn step(world: &World, origin: Vec3, direction: Vec3, last: bool) -> Step {
+    if !last {
+        world.closest(origin, direction).map_or(Step::Sky, Step::Surface)
+    } else if world.occluded(origin, direction) {
+        Step::Blocked
+    } else {
+        Step::Sky
+    }
 }
 
 /// Direct light of all lamps that an albedo of 1 would reflect.

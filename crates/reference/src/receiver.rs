@@ -1,5 +1,6 @@
 //! Radiance at single points, with its standard error.
 
+use crate::render::arriving;
 use crate::world::Surface;
 use crate::{Light, Settings, World, path};
 use glam::{DVec3, Vec3};
@@ -7,7 +8,7 @@ use rayon::prelude::*;
 use raytrace::offset_origin;
 use sampling::rng::Rng;
 
-/// A point of a diffuse surface, on one side.
+/// A point of a diffuse surface, on one side; it mirrors nothing itself, whatever the world does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Receiver {
     /// World, metres.
@@ -23,8 +24,17 @@ pub struct Receiver {
 impl Receiver {
     fn surface(&self) -> Surface {
         let origin = offset_origin(self.position, self.geometric_normal);
-        Surface { origin, normal: self.normal, facing: self.normal, albedo: self.albedo }
+        Surface { origin, normal: self.normal, facing: self.normal, albedo: self.albedo, mirror: None }
     }
+}
+
+/// A ray of a camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gaze {
+    /// World, metres.
+    pub eye: Vec3,
+    /// Unit, away from the eye.
+    pub direction: Vec3,
 }
 
 /// A mean over independent paths.
@@ -46,6 +56,16 @@ pub fn radiance_at(world: &World, light: &Light, receivers: &[Receiver], setting
         average(settings.samples, || path::outgoing(world, light, start, settings.max_bounces, &mut rng))
     };
     receivers.par_iter().enumerate().map(estimate).collect()
+}
+
+/// Radiance that arrives at the eye of each gaze, as in a picture; runs on all threads, to the same bits on any number of them.
+#[must_use]
+pub fn radiance_seen(world: &World, light: &Light, gazes: &[Gaze], settings: &Settings) -> Vec<Estimate> {
+    let estimate = |(index, gaze): (usize, &Gaze)| {
+        let mut rng = Rng::new(settings.seed, index as u64);
+        average(settings.samples, || arriving(world, light, gaze.eye, gaze.direction, settings.max_bounces, &mut rng))
+    };
+    gazes.par_iter().enumerate().map(estimate).collect()
 }
 
 /// Mean and standard error of `samples` independent values.

@@ -60,7 +60,14 @@ fn pixel(world: &World, light: &Light, view: &View, [x, y, width]: [u32; 3], set
 }
 
 /// Radiance that arrives at the camera from a direction.
-fn arriving(world: &World, light: &Light, eye: Vec3, direction: Vec3, max_bounces: Option<u32>, rng: &mut Rng) -> Vec3 {
+pub(crate) fn arriving(
+    world: &World,
+    light: &Light,
+    eye: Vec3,
+    direction: Vec3,
+    max_bounces: Option<u32>,
+    rng: &mut Rng,
+) -> Vec3 {
     match world.seen(eye, direction, rng) {
         Some(seen) => seen.emission + path::outgoing(world, light, seen.surface, max_bounces, rng),
         None => light.sky(direction),

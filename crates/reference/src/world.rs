@@ -1,5 +1,7 @@
 //! The scene as rays see it: what they hit, and the surface that is there.
 
+use crate::gloss::{Gloss, shining};
+use crate::mirror::{Mirror, Polish};
 use glam::Vec3;
 use raytrace::{Hit, Ray, Tracer, offset_origin_on};
 use sampling::rng::Rng;
@@ -24,9 +26,11 @@ struct Layer<'a> {
     normals: Vec<Vec3>,
     /// Whether normal maps bend shading normals.
     bent: bool,
+    /// How the materials mirror for which it says so; none where all is matte.
+    gloss: Option<(Gloss, Vec<bool>)>,
 }
 
-/// One side of a diffuse surface at a point, as far as light needs to know it.
+/// One side of a surface at a point, as far as light needs to know it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Surface {
     /// Just off the surface on this side: where rays start.
@@ -37,6 +41,8 @@ pub(crate) struct Surface {
     pub(crate) facing: Vec3,
     /// Diffuse, RGB in [0, 1].
     pub(crate) albedo: Vec3,
+    /// What it mirrors towards where it is seen from; none where it is matte.
+    pub(crate) mirror: Option<Mirror>,
 }
 
 impl Surface {
@@ -70,6 +76,15 @@ impl<'a> World<'a> {
         Self { solid, veils: (!veils.parts.is_empty()).then_some(veils) }
     }
 
+    /// The same world with materials that mirror; without, all is diffuse.
+    #[must_use]
+    pub fn with_gloss(mut self, gloss: Gloss) -> Self {
+        for layer in std::iter::once(&mut self.solid).chain(&mut self.veils) {
+            layer.gloss = Some((gloss, shining(layer.scene)));
+        }
+        self
+    }
+
     /// Whether anything stops light on the way to infinity.
     pub(crate) fn occluded(&self, origin: Vec3, direction: Vec3) -> bool {
         self.solid.tracer.occluded(&Ray::new(origin, direction), &|t, u, v| self.solid.is_there(t, u, v))
@@ -78,7 +93,7 @@ impl<'a> World<'a> {
     /// The surface that a ray of light meets, on the side where it arrives.
     pub(crate) fn closest(&self, origin: Vec3, direction: Vec3) -> Option<Surface> {
         let hit = self.solid.closest(&Ray::new(origin, direction))?;
-        Some(self.solid.surface(&hit))
+        Some(self.solid.surface(&hit, direction))
     }
 
     /// The surface that a camera ray shows. Backs of single-sided surfaces are not drawn; a veil is seen with the
@@ -90,12 +105,12 @@ impl<'a> World<'a> {
             ray.t_max = behind.map_or(f32::INFINITY, |hit| hit.t);
             while let Some(hit) = veils.drawn(ray) {
                 if rng.next_f32() < veils.opacity(&hit) {
-                    return Some(veils.seen(&hit));
+                    return Some(veils.seen(&hit, direction));
                 }
                 ray.t_min = hit.t.next_up();
             }
         }
-        behind.map(|hit| self.solid.seen(&hit))
+        behind.map(|hit| self.solid.seen(&hit, direction))
     }
 }
 
@@ -113,7 +128,7 @@ impl<'a> Layer<'a> {
                 masked.push(scene.material(m).is_masked());
             }
         }
-        Self { scene, tracer: Tracer::build(&positions, &triangles, &masked), parts, normals, bent }
+        Self { scene, tracer: Tracer::build(&positions, &triangles, &masked), parts, normals, bent, gloss: None }
     }
 
     fn part(&self, triangle: u32) -> (usize, usize) {
@@ -148,13 +163,13 @@ impl<'a> Layer<'a> {
         self.scene.coverage(mesh, triangle, hit.u, hit.v) * (1.0 - self.scene.material(mesh).transmission)
     }
 
-    fn seen(&self, hit: &Hit) -> Seen {
+    fn seen(&self, hit: &Hit, direction: Vec3) -> Seen {
         let (mesh, triangle) = self.part(hit.triangle);
-        Seen { surface: self.surface(hit), emission: self.scene.emission(mesh, triangle, hit.u, hit.v) }
+        Seen { surface: self.surface(hit, direction), emission: self.scene.emission(mesh, triangle, hit.u, hit.v) }
     }
 
-    /// The side of the surface that was hit. The shading normal goes with the side of the winding.
-    fn surface(&self, hit: &Hit) -> Surface {
+    /// The side of the surface that a ray along `direction` hit. The shading normal goes with the side of the winding.
+    fn surface(&self, hit: &Hit, direction: Vec3) -> Surface {
         let (m, triangle) = self.part(hit.triangle);
         let mesh = &self.scene.meshes[m];
         let side = self.normals[hit.triangle as usize] * if hit.front { 1.0 } else { -1.0 };
@@ -167,7 +182,27 @@ impl<'a> Layer<'a> {
             normal: normal * turn,
             facing: facing * turn,
             albedo: self.scene.albedo(m, triangle, hit.u, hit.v),
+            mirror: self.mirror(hit, facing * turn, turn, direction),
         }
+    }
+
+    /// What the side of the surface that faces along `facing` mirrors back along a ray.
+    fn mirror(&self, hit: &Hit, facing: Vec3, turn: f32, direction: Vec3) -> Option<Mirror> {
+        let (m, triangle) = self.part(hit.triangle);
+        let (gloss, shines) = self.gloss.as_ref()?;
+        if !shines[self.scene.meshes[m].material as usize] {
+            return None;
+        }
+        let [metallic, roughness] = self.scene.shine(m, triangle, hit.u, hit.v);
+        let polish = Polish {
+            mirroring: gloss.mirroring,
+            normal: if gloss.bent { self.scene.bent_normal(m, triangle, hit.u, hit.v) * turn } else { facing },
+            facing,
+            base: self.scene.base_color(m, triangle, hit.u, hit.v).truncate().clamp(Vec3::ZERO, Vec3::ONE),
+            metallic,
+            roughness: gloss.roughness.unwrap_or(roughness).clamp(0.0, 1.0),
+        };
+        Some(Mirror::new(&polish, -direction))
     }
 }
 

@@ -11,8 +11,8 @@ use anyhow::{Context, Result, ensure};
 use coeff_io::Bounces;
 use glam::Vec3;
 use probe_io::Environment;
-use reference::{Light, Picture, Settings, World};
-use sh_math::Bands;
+use reference::{Gloss, Light, Lobe, Mirroring, Picture, Settings, World};
+use sh_math::{Bands, lobe};
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -20,9 +20,15 @@ Examples:
   relume reference house.glb --probe kitchen.hdr --spp 1024 --size 480x270 -o truth.exr
   relume reference house.glb --probe kitchen.hdr --light bands:5 -o what-a-bake-should-give.exr
   relume reference house.glb --probe sun.hdr --light bands:5 --window auto -o what-render-window-auto-should-give.exr
+  relume reference builtin:cornell-box --probe builtin:sky --specular off -o diffuse-alone.exr
+  relume reference lobby.glb --probe kitchen.hdr --specular phong --exponent 20 -o what-render-lobe-phong-should-give.exr
+  relume reference lobby.glb --probe kitchen.hdr --specular microfacet -o true-ggx.exr
 
 `--light bands:N` lights the scene with what N bands hold of the probe: a bake of N bands should give the same picture,
-but for noise and for what lies between vertices.";
+but for noise and for what lies between vertices. Surfaces that shine mirror as `render` draws them, with a lobe about the
+mirror direction that no bands cut off; normal maps bend the mirror's normal always, that of diffuse light with
+`--normal-maps`. What is not metal nor smoother than 0.6 anywhere does not shine: a matte scene has the same picture
+whatever `--specular` says.";
 
 /// Columns of the picture that stands for band-limited light: 16 bands change little over one of its pixels.
 const LIGHT_WIDTH: usize = 512;
@@ -45,6 +51,15 @@ pub(crate) struct Options {
     /// What is done against ringing of the light of few bands, as `render` does it.
     #[arg(long, value_enum, default_value_t = Window::None)]
     window: Window,
+    /// What surfaces that shine mirror, besides their diffuse part.
+    #[arg(long, value_enum, default_value_t = Specular::Ggx)]
+    specular: Specular,
+    /// One perceptual roughness for all that shines, 0 to 1.
+    #[arg(long, value_name = "R", conflicts_with = "exponent", value_parser = roughness)]
+    roughness: Option<f32>,
+    /// The same as an exponent of Phong, 0 to 100000.
+    #[arg(long, value_name = "S", value_parser = exponent)]
+    exponent: Option<f32>,
     /// Lets normal maps bend the normals that diffuse light is taken by, as light maps do.
     #[arg(long)]
     normal_maps: bool,
@@ -71,6 +86,46 @@ enum Truth {
     Bands(Bands),
 }
 
+/// The model of surfaces that shine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Specular {
+    /// Nothing: diffuse light alone.
+    Off,
+    /// A lobe of Phong about the mirror direction, as wide as GGX.
+    Phong,
+    /// The lobe of GGX seen head-on about the mirror direction, as `render` draws it.
+    Ggx,
+    /// The microfacets of GGX themselves, which `render` comes near to.
+    Microfacet,
+}
+
+impl Options {
+    /// How surfaces mirror; none where they do not.
+    fn gloss(&self) -> Result<Option<Gloss>> {
+        let mirroring = match self.specular {
+            Specular::Off if self.roughness.is_some() || self.exponent.is_some() => {
+                return Err(
+                    Usage("--roughness and --exponent are for what shines, and --specular is off".into()).into()
+                );
+            }
+            Specular::Off => return Ok(None),
+            Specular::Phong => Mirroring::Lobe(Lobe::Phong),
+            Specular::Ggx => Mirroring::Lobe(Lobe::Ggx),
+            Specular::Microfacet => Mirroring::Microfacet,
+        };
+        let of_exponent = self.exponent.map(|s| lobe::roughness_of_exponent(f64::from(s)) as f32);
+        Ok(Some(Gloss { roughness: self.roughness.or(of_exponent), ..Gloss::new(mirroring) }))
+    }
+}
+
+fn roughness(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|value| (0.0..=1.0).contains(value)).ok_or("give a roughness from 0 to 1".into())
+}
+
+fn exponent(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|value| (0.0..=1e5).contains(value)).ok_or("give an exponent from 0 to 100000".into())
+}
+
 fn light(text: &str) -> Result<Truth, String> {
     match text.split_once(':') {
         None if text == "full" => Ok(Truth::Full),
@@ -80,6 +135,7 @@ fn light(text: &str) -> Result<Truth, String> {
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
+    let gloss = options.gloss()?;
     output::check(&options.output.path)?;
     let scene = options.scene.load(console)?;
     let camera = lens::of_scene(options.camera.as_ref(), &scene)?;
@@ -97,20 +153,15 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     };
     let settings = Settings { samples: options.spp, seed: options.seed, max_bounces };
     interrupt::watch()?;
+    let plain = World::with_normal_maps(&scene, options.normal_maps);
+    let world = gloss.into_iter().fold(plain, World::with_gloss);
     let picture = {
         let progress = console.progress();
         let rows = options.size.height;
-        reference::render(
-            &World::with_normal_maps(&scene, options.normal_maps),
-            &light,
-            &camera,
-            [options.size.width, rows],
-            &settings,
-            &|share| {
-                progress.set("rows", (share * rows as f32).round() as u64, u64::from(rows));
-                interrupt::flow()
-            },
-        )
+        reference::render(&world, &light, &camera, [options.size.width, rows], &settings, &|share| {
+            progress.set("rows", (share * rows as f32).round() as u64, u64::from(rows));
+            interrupt::flow()
+        })
     };
     let mut picture = picture.context("the reference was cancelled; no file was written")?;
     let noise = noise(&picture);
@@ -145,4 +196,36 @@ fn noise(picture: &Picture) -> f64 {
     let sum = |pixels: &[[f32; 3]]| pixels.as_flattened().iter().map(|v| f64::from(*v)).sum::<f64>();
     let radiance = sum(&picture.pixels);
     if radiance > 0.0 { sum(&picture.std_error) / radiance } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use reference::directional_albedo;
+
+    /// The polynomials of the renderers against the integral that the reference sums up by itself.
+    #[test]
+    fn renderers_mirror_as_much_as_the_reference() {
+        let apart = |scale: f32| {
+            let mut most = 0.0f32;
+            for k in 0..400 {
+                let (roughness, cosine) = (0.05 + 0.05 * (k % 20) as f32, 0.05 + 0.05 * (k / 20) as f32);
+                let [a, b] = lobe::environment_brdf((roughness * scale).min(1.0), cosine.min(1.0));
+                for f0 in [0.04, 0.5, 1.0] {
+                    let truth = directional_albedo(Vec3::splat(f0), roughness.min(1.0), cosine.min(1.0)).x;
+                    most = most.max((f0 * a + b - truth).abs());
+                }
+            }
+            most
+        };
+        assert!(apart(1.0) < 0.06, "{}", apart(1.0));
+        assert!(apart(0.7) > 0.06, "another roughness must show: {}", apart(0.7));
+    }
+
+    #[test]
+    fn roughness_and_exponents_have_their_ranges() {
+        assert_eq!((roughness("0.3"), exponent("20")), (Ok(0.3), Ok(20.0)));
+        assert!(["-0.1", "1.1", "nan", "x"].iter().all(|text| roughness(text).is_err()));
+        assert!(["-1", "1e6", "nan", "x"].iter().all(|text| exponent(text).is_err()));
+    }
 }

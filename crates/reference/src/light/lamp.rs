@@ -13,7 +13,7 @@ pub(crate) struct LampLight {
     /// 1 - cos(half angle); 0 for a point.
     height: f32,
     /// Radiance of the disc times its solid angle; for a point the irradiance on a surface that faces it.
-    flux: Vec3,
+    pub(crate) flux: Vec3,
 }
 
 impl LampLight {
@@ -37,5 +37,15 @@ impl LampLight {
             self.frame.normal
         };
         (direction, self.flux)
+    }
+
+    /// Density per solid angle of [`Self::sample`] over the disc; none for a point, which no direction meets by chance.
+    pub(crate) fn density(&self) -> Option<f32> {
+        (self.height > 0.0).then(|| 1.0 / (TAU * self.height))
+    }
+
+    /// Whether a unit direction meets the disc. The chord keeps what a cosine near 1 rounds off.
+    pub(crate) fn meets(&self, direction: Vec3) -> bool {
+        0.5 * (direction - self.frame.normal).length_squared() < self.height
     }
 }
