@@ -95,7 +95,8 @@ pub(crate) fn bake_then<T>(
     let bank = DirectionBank::new(bands, &Settings { quality, ..settings.clone() });
     let monitor = Monitor::new(progress);
     let glossy = simulates(&plan, Effect::Glossy);
-    let mirrors = match glossy {
+    // Where no light bounces none is mirrored on its way.
+    let mirrors = match glossy && simulates(&plan, Effect::Interreflection) {
         true => Some(Mirrors::find(&world, &receivers, settings, bands, &monitor)?),
         false => None,
     };

@@ -108,7 +108,9 @@ impl Job<'_> {
 
     /// Whether surfaces send light to those that shine.
     fn bounces(&self) -> bool {
-        self.glossy && self.done.gatherer.hits && self.done.settings.bounces != coeff_io::Bounces::Fixed(0)
+        self.done.gatherer.mirrors.is_some()
+            && self.done.gatherer.hits
+            && self.done.settings.bounces != coeff_io::Bounces::Fixed(0)
     }
 
     fn bounced(&self, maker: &RowMaker<'_>) -> Option<Bounced> {

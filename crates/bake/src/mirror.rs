@@ -26,6 +26,8 @@ use sh_math::{Bands, zonal};
 const CHUNK: usize = 64;
 /// Most bands of gloss: the matrices of bounces have their fourth power.
 pub(crate) const MOST_BANDS: u32 = 10;
+/// Factor of a lobe, against that of its mean, below which nothing is seen of it.
+const LEAST_FACTOR: f32 = 1e-3;
 /// Share of what stands around a mirror below which nothing is worth knowing of it.
 const LEAST_CLOSED: f32 = 0.02;
 
@@ -33,8 +35,8 @@ const LEAST_CLOSED: f32 = 0.02;
 pub(crate) struct Mirrors {
     /// Bands of visibility.
     pub(crate) bands: Bands,
-    /// `a` what arrives, `b` the light, `c` visibility.
-    terms: Vec<Triple>,
+    /// Per function of what arrives: its products of light and visibility.
+    terms: Vec<Vec<Term>>,
     light: Bands,
     table: Vec<f32>,
     /// Of each vertex of the scene its row, or [`NONE`].
@@ -43,6 +45,14 @@ pub(crate) struct Mirrors {
     visibility: Vec<f32>,
     /// Any-hit rays traced for it.
     pub(crate) rays: u64,
+}
+
+/// One triple product, small: a bake goes through all of them for every ray that meets a mirror.
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    light: u16,
+    visibility: u16,
+    value: f32,
 }
 
 /// What a mirror sends towards one point.
@@ -92,7 +102,10 @@ impl Mirrors {
         let bank = DirectionBank::over(Domain::Hemisphere(judge), bands, settings);
         let gatherer = Gatherer { hits: false, mirrors: None, ..gatherer(world, &bank, bands, settings) };
         let (visibility, rays) = visibilities(&gatherer, receivers, &ids, monitor)?;
-        let terms = triples(bands, transfer, bands);
+        let mut terms = vec![Vec::new(); bands.coefficients()];
+        for Triple { a, b, c, value } in triples(bands, transfer, bands) {
+            terms[a as usize].push(Term { light: b as u16, visibility: c as u16, value: value as f32 });
+        }
         Ok(Self { bands, terms, light: transfer, table: lobe::table(Lobe::Ggx, bands), row_of, visibility, rays })
     }
 
@@ -162,8 +175,11 @@ impl Mirrors {
             seen.iter_mut().zip(own).for_each(|(sum, v)| *sum += share * v);
         }
         out.fill(0.0);
-        for term in &self.terms {
-            out[term.b as usize] += term.value as f32 * lobe[term.a as usize] * seen[term.c as usize];
+        let least = LEAST_FACTOR * lobe[0].abs();
+        for (terms, factor) in self.terms.iter().zip(&*lobe).filter(|(_, factor)| factor.abs() > least) {
+            for term in terms {
+                out[term.light as usize] += factor * term.value * seen[term.visibility as usize];
+            }
         }
         let open: f32 = lobe.iter().zip(&*seen).map(|(a, v)| a * v).sum();
         let mut cosine = [0.0f32; (MOST_BANDS * MOST_BANDS) as usize];
