@@ -27,37 +27,47 @@ fn furnace(roughness: f32) -> Vec<[f32; 3]> {
     (0..(SIZE * SIZE) as usize).map(|pixel| share(roughness, pixel, SIZE)).collect()
 }
 
+/// The worst error of a furnace of a roughness.
+fn furnace_error(renderer: &Renderer<'_>, lobe: Lobe, roughness: f32, tail: bool) -> f32 {
+    let mut frame = bare(lobe);
+    frame.gloss = GlossView { tail, roughness: Some(roughness), ..frame.gloss };
+    apart(&renderer.draw(&frame).expect("a picture").linear, &furnace(roughness))
+}
+
+const ROUGHNESSES: [f32; 4] = [0.1, 0.35, 0.6, 1.0];
+
 #[test]
 fn a_white_furnace_mirrors_exactly_its_share() {
+    let sky = sky();
     for storage in STORAGES {
-        for lobe in Lobe::ALL {
-            for roughness in [0.1, 0.35, 0.6, 1.0] {
-                for tail in [false, true] {
-                    let prt = metal_wall(storage, roughness, &belt(0.0, 1.0), None);
-                    let mut frame = bare(lobe);
-                    frame.gloss.tail = tail;
-                    let error = apart(&draw(&prt, &frame), &furnace(roughness));
-                    assert!(error < 1e-3, "{storage:?} {lobe:?} {roughness} {tail}: {error}");
-                }
+        let prt = metal_wall(storage, 0.5, &belt(0.0, 1.0), None);
+        let renderer = Renderer::new(&prt, &sky).expect("a sound scene");
+        let all = Lobe::ALL.into_iter().flat_map(|lobe| ROUGHNESSES.map(|roughness| (lobe, roughness)));
+        for (lobe, roughness) in all {
+            for tail in [false, true] {
+                let error = furnace_error(&renderer, lobe, roughness, tail);
+                assert!(error < 1e-3, "{storage:?} {lobe:?} {roughness} {tail}: {error}");
             }
         }
+        let own = apart(&draw(&prt, &front(SIZE)), &furnace(0.5));
+        let other = apart(&draw(&prt, &front(SIZE)), &furnace(1.0));
+        assert!(own < 1e-3 && other > 0.05, "the material's own roughness: {own} {other}");
     }
 }
 
 #[test]
 fn a_furnace_half_blocked_by_white_surfaces_is_still_one() {
+    let (sky, open) = (sky(), belt(0.6, 1.0));
     for storage in STORAGES {
-        for lobe in Lobe::ALL {
-            for roughness in [0.1, 0.5, 1.0] {
-                let open = belt(0.6, 1.0);
-                let closed = metal_wall(storage, roughness, &open, Some(bounced(&belt(0.0, 0.6))));
-                let leaking = metal_wall(storage, roughness, &open, None);
-                let frame = bare(lobe);
-                let error = apart(&draw(&closed, &frame), &furnace(roughness));
-                let lost = apart(&draw(&leaking, &frame), &furnace(roughness));
-                assert!(error < 1e-3, "{storage:?} {lobe:?} {roughness}: {error}");
-                assert!(lost > 0.05, "what is blocked must be missed: {lost}");
-            }
+        let closed = metal_wall(storage, 0.5, &open, Some(bounced(&belt(0.0, 0.6))));
+        let leaking = metal_wall(storage, 0.5, &open, None);
+        let [closed, leaking] = [&closed, &leaking].map(|prt| Renderer::new(prt, &sky).expect("a sound scene"));
+        let all = Lobe::ALL.into_iter().flat_map(|lobe| ROUGHNESSES.map(|roughness| (lobe, roughness)));
+        for (lobe, roughness) in all {
+            let error = furnace_error(&closed, lobe, roughness, false);
+            let lost = furnace_error(&leaking, lobe, roughness, false);
+            assert!(error < 1e-3, "{storage:?} {lobe:?} {roughness}: {error}");
+            assert!(lost > 0.05, "what is blocked must be missed: {lost}");
         }
     }
 }
