@@ -11,8 +11,7 @@ mod sheets;
 mod tables;
 
 use crate::arrival::{Arrival, Arrivals};
-use stub::Sketch;
-mod stub;
+use crate::compress::Sketch;
 use crate::domain::Domain;
 use crate::error::Error;
 use crate::extras::{Done, Extras};

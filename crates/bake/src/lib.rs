@@ -14,6 +14,7 @@ mod bake;
 mod bandwidth;
 mod bend;
 mod bundle;
+pub mod compress;
 mod directions;
 mod domain;
 mod drawn;

@@ -1,8 +1,8 @@
 //! The numbers that are kept of a receiver, in one row while texels are filled, stitched and averaged: all of it is linear.
 
 use super::fixed::FixedBounces;
-use super::stub::Sketch;
 use crate::arrival::Arrival;
+use crate::compress::Sketch;
 use glam::Vec3;
 use sh_math::{Bands, zonal};
 

@@ -2,8 +2,8 @@
 
 use super::row::{Bouncing, Layout, RowMaker};
 use super::sheets::{BakedSheet, SheetPlan};
-use super::stub::{Aim, compress, compress_sketched};
 use super::{Job, Vertices};
+use crate::compress::{Aim, compress, compress_sketched};
 use crate::maps::plate::Plate;
 use coeff_io::{
     Arriving, Bounced, Codebook, Gloss, GlossRecord, Prt, Table, TransferLevel, TransferSheet, TransferTextures,
@@ -41,7 +41,6 @@ struct Coded {
 
 pub(super) fn write(job: &Job<'_>, maker: &RowMaker<'_>, found: Found, mut record: GlossRecord, prt: &mut Prt) {
     let aim = job.extras.compression.rows;
-    let seed = job.done.settings.seed;
     let levels: Vec<Level<'_>> =
         found.baked.iter().flat_map(|sheet| sheet.levels.iter().map(|plate| Level::of(plate, sheet.layout))).collect();
     let at_vertices = maker.layout(false, true);
@@ -66,11 +65,11 @@ pub(super) fn write(job: &Job<'_>, maker: &RowMaker<'_>, found: Found, mut recor
     }
     record.bytes[0] = 4 * (diffuse.numbers() + visibility.numbers()) as u64 + long_bytes(maker, &bounces);
 
-    let mut diffuse = diffuse.coded(aim, seed);
-    let mut visibility = visibility.coded(aim, seed);
+    let mut diffuse = diffuse.coded(aim);
+    let mut visibility = visibility.coded(aim);
     let mut bounces = match &maker.bouncing {
-        Bouncing::Sketched(sketch) => bounces.coded_sketched(sketch, job.extras.compression.bounces, seed),
-        _ => bounces.coded(None, seed),
+        Bouncing::Sketched(sketch) => bounces.coded_sketched(sketch, job.extras.compression.bounces),
+        _ => bounces.coded(None),
     };
     record.compression = [diffuse.error, visibility.error, bounces.error];
     let books = [&diffuse.book, &visibility.book, &bounces.book];
@@ -169,9 +168,9 @@ impl Rows {
     }
 
     /// Tables in clusters to within a relative error, or in halves where none is given or clusters would take more.
-    fn coded(self, error: Option<f32>, seed: u64) -> Coded {
+    fn coded(self, error: Option<f32>) -> Coded {
         let all = error.filter(|_| self.numbers() > 0).and_then(|error| {
-            let aim = Aim { error, most_clusters: MOST_CLUSTERS, most_rank: MOST_RANK, seed };
+            let aim = Aim { error, most_clusters: MOST_CLUSTERS, most_rank: MOST_RANK };
             compress(&self.sets.concat(), self.columns, &aim)
         });
         match all {
@@ -187,11 +186,11 @@ impl Rows {
     }
 
     /// Rows that are kept by the vectors of a sketch: always by a codebook, in the worst case that of the sketch itself.
-    fn coded_sketched(self, sketch: &super::stub::Sketch, error: f32, seed: u64) -> Coded {
+    fn coded_sketched(self, sketch: &crate::compress::Sketch, error: f32) -> Coded {
         if self.sets.is_empty() {
             return Coded { book: None, tables: Vec::new().into_iter(), error: 0.0 };
         }
-        let aim = Aim { error, most_clusters: MOST_CLUSTERS, most_rank: MOST_RANK, seed };
+        let aim = Aim { error, most_clusters: MOST_CLUSTERS, most_rank: MOST_RANK };
         let all = compress_sketched(&self.sets.concat(), sketch, &aim);
         let tables = self.split(&all.book, &all.clusters, &all.weights);
         Coded { book: Some(all.book), tables: tables.into_iter(), error: all.error }

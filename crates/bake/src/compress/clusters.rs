@@ -1,0 +1,122 @@
+//! Clustered principal components: each row is the mean of its cluster and a combination of the cluster's own vectors.
+
+use super::eigen::symmetric;
+use rayon::prelude::*;
+
+/// Turns of assigning rows and finding means and vectors anew.
+const TURNS: usize = 4;
+/// Means near to a row whose clusters are tried.
+const TRIED: usize = 8;
+
+/// Means and principal vectors of clusters, in full.
+#[derive(Debug, Clone)]
+pub(crate) struct Clusters {
+    pub(crate) columns: usize,
+    pub(crate) each: Vec<Cluster>,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Cluster {
+    pub(crate) mean: Vec<f32>,
+    /// The largest variance first, orthonormal.
+    pub(crate) vectors: Vec<Vec<f32>>,
+    /// Sum over its rows of the squares along each vector, and of those along all that are not kept.
+    variances: Vec<f64>,
+}
+
+impl Clusters {
+    /// All rows in one cluster with all its vectors.
+    pub(crate) fn one(rows: &[f32], columns: usize) -> Self {
+        let all: Vec<u32> = (0..(rows.len() / columns) as u32).collect();
+        Self { columns, each: vec![Cluster::of(rows, columns, &all)] }
+    }
+
+    /// Twice as many: each is cut at its mean across its longest axis; then rows and clusters settle, judged with `rank` vectors.
+    pub(crate) fn split(&self, rows: &[f32], rank: usize) -> Self {
+        let half = |row: &[f32], c: u32| {
+            let cluster = &self.each[c as usize];
+            let along: f32 = cluster.weights(row, 1).first().copied().unwrap_or(0.0);
+            2 * c + u32::from(along > 0.0)
+        };
+        let of = self.assign(rows, rank);
+        let of: Vec<u32> = rows.chunks_exact(self.columns).zip(of).map(|(row, c)| half(row, c)).collect();
+        let mut next = self.of_members(rows, &of, 2 * self.each.len());
+        for _ in 0..TURNS {
+            let of = next.assign(rows, rank);
+            next = next.of_members(rows, &of, next.each.len());
+        }
+        next
+    }
+
+    /// Clusters of rows by their numbers; those of none are dropped.
+    fn of_members(&self, rows: &[f32], of: &[u32], count: usize) -> Self {
+        let mut members = vec![Vec::new(); count];
+        (0..).zip(of).for_each(|(row, &c)| members[c as usize].push(row));
+        members.retain(|members: &Vec<u32>| !members.is_empty());
+        let each = members.par_iter().map(|members| Cluster::of(rows, self.columns, members)).collect();
+        Self { columns: self.columns, each }
+    }
+
+    /// Of each row the cluster whose mean and first `rank` vectors come nearest.
+    pub(crate) fn assign(&self, rows: &[f32], rank: usize) -> Vec<u32> {
+        rows.par_chunks(self.columns).map(|row| self.nearest(row, rank)).collect()
+    }
+
+    fn nearest(&self, row: &[f32], rank: usize) -> u32 {
+        let distance = |mean: &[f32]| row.iter().zip(mean).map(|(x, m)| (x - m) * (x - m)).sum::<f32>();
+        let mut near: Vec<(f32, u32)> =
+            (0..).zip(&self.each).map(|(c, cluster): (u32, _)| (distance(&cluster.mean), c)).collect();
+        if near.len() > TRIED {
+            near.select_nth_unstable_by(TRIED, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            near.truncate(TRIED);
+        }
+        let left = |&(square, c): &(f32, u32)| {
+            let weights = self.each[c as usize].weights(row, rank);
+            (square - weights.iter().map(|w| w * w).sum::<f32>(), c)
+        };
+        near.iter().map(left).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map_or(0, |(_, c)| c)
+    }
+
+    /// The sum of squares that is left out with so many vectors of each.
+    pub(crate) fn left_out(&self, rank: usize) -> f64 {
+        self.each.iter().map(|cluster| cluster.variances.iter().skip(rank).sum::<f64>()).sum()
+    }
+}
+
+impl Cluster {
+    /// Mean and vectors of some of the rows.
+    fn of(rows: &[f32], columns: usize, members: &[u32]) -> Self {
+        let row = |&r: &u32| &rows[r as usize * columns..][..columns];
+        let share = 1.0 / members.len() as f64;
+        let mut mean = vec![0.0f64; columns];
+        members.iter().map(row).for_each(|row| mean.iter_mut().zip(row).for_each(|(m, x)| *m += f64::from(*x)));
+        mean.iter_mut().for_each(|m| *m *= share);
+        let mut covariance = vec![0.0f64; columns * columns];
+        let mut away = vec![0.0f64; columns];
+        for row in members.iter().map(row) {
+            away.iter_mut().zip(row).zip(&mean).for_each(|((away, x), m)| *away = f64::from(*x) - m);
+            for (i, a) in away.iter().enumerate() {
+                let line = &mut covariance[i * columns..i * columns + i + 1];
+                line.iter_mut().zip(&away).for_each(|(sum, b)| *sum += a * b);
+            }
+        }
+        for i in 0..columns {
+            for j in 0..i {
+                covariance[j * columns + i] = covariance[i * columns + j];
+            }
+        }
+        let (values, vectors) = symmetric(&covariance, columns);
+        let short = |vector: Vec<f64>| vector.into_iter().map(|x| x as f32).collect();
+        Self {
+            mean: mean.into_iter().map(|m| m as f32).collect(),
+            vectors: vectors.into_iter().map(short).collect(),
+            variances: values.into_iter().map(|v| v.max(0.0)).collect(),
+        }
+    }
+
+    /// How far a row lies along each of the first vectors.
+    pub(crate) fn weights(&self, row: &[f32], rank: usize) -> Vec<f32> {
+        let along = |vector: &Vec<f32>| row.iter().zip(&self.mean).zip(vector).map(|((x, m), v)| (x - m) * v).sum();
+        self.vectors.iter().take(rank).map(along).collect()
+    }
+}
