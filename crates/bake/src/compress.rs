@@ -47,17 +47,17 @@ pub struct Compressed {
 pub fn compress(rows: &[f32], columns: usize, aim: &Aim) -> Option<Compressed> {
     assert!(columns > 0 && rows.len().is_multiple_of(columns), "whole rows");
     let plain = 2 * rows.len();
-    let found = search(rows, columns, columns, aim)?;
+    let found = search(rows, columns, aim)?;
     if found.bytes >= plain {
         return None;
     }
-    let all = found.encode(rows, &|vector| vector.to_vec());
+    let all = found.encode(rows, None);
     let table = Table::clustered(&all.book, &all.clusters, &all.weights);
     let error = distance(rows, &table.decode(Some(&all.book)));
     (error <= 1.05 * aim.error).then_some(Compressed { error, ..all })
 }
 
-/// Puts rows that are kept by the vectors of a sketch into clusters, whose means and vectors are of the full length again. Where the aim cannot be
+/// Puts rows that are kept by the vectors of a sketch into clusters, whose means and vectors are combinations of the sketch's. Where the aim cannot be
 /// kept, as near as clusters come.
 ///
 /// # Panics
@@ -74,8 +74,8 @@ pub fn compress_sketched(rows: &[f32], sketch: &Sketch, aim: &Aim) -> Compressed
         let most = rank.min(aim.most_rank as usize);
         Choice { clusters, rank: most, bytes: 0 }
     };
-    let found = search(rows, rank, sketch.columns(), &own).unwrap_or_else(one);
-    let all = found.encode(rows, &|vector| sketch.expand(vector));
+    let found = search(rows, rank, &own).unwrap_or_else(one);
+    let all = found.encode(rows, Some(sketch));
     let small = found.decode(rows, &all);
     let (own, before) = (distance(rows, &small), sketch.error());
     Compressed { error: (own * own + before * before).sqrt(), ..all }
@@ -89,8 +89,8 @@ struct Choice {
     bytes: usize,
 }
 
-/// The smallest choice that keeps the aim; vectors have `width` numbers in the file.
-fn search(rows: &[f32], columns: usize, width: usize, aim: &Aim) -> Option<Choice> {
+/// The smallest choice that keeps the aim.
+fn search(rows: &[f32], columns: usize, aim: &Aim) -> Option<Choice> {
     let count = rows.len() / columns;
     if count == 0 {
         return None;
@@ -106,7 +106,7 @@ fn search(rows: &[f32], columns: usize, width: usize, aim: &Aim) -> Option<Choic
         let most = columns.min(aim.most_rank as usize);
         let rank = (0..=most).find(|&rank| clusters.left_out(rank) <= enough);
         if let Some(rank) = rank {
-            let book = clusters.each.len() * (1 + rank) * width * 2;
+            let book = clusters.each.len() * (1 + rank) * columns * 2;
             let bytes = book + count * (2 + 2 * rank);
             match &best {
                 Some(best) if best.bytes <= bytes => worse += 1,
@@ -139,8 +139,8 @@ fn sample(rows: &[f32], columns: usize) -> Vec<f32> {
 }
 
 impl Choice {
-    /// All rows by the clusters; `expand` makes vectors as long as those of the file.
-    fn encode(&self, rows: &[f32], expand: &dyn Fn(&[f32]) -> Vec<f32>) -> Compressed {
+    /// All rows by the clusters; of those of a sketch its vectors are shared.
+    fn encode(&self, rows: &[f32], sketch: Option<&Sketch>) -> Compressed {
         use rayon::prelude::*;
         let columns = self.clusters.columns;
         let of = self.clusters.assign(rows, self.rank);
@@ -151,11 +151,14 @@ impl Choice {
             .collect();
         let mut values = Vec::new();
         for cluster in &self.clusters.each {
-            values.extend(expand(&cluster.mean));
-            cluster.vectors.iter().take(self.rank).for_each(|vector| values.extend(expand(vector)));
+            values.extend_from_slice(&cluster.mean);
+            cluster.vectors.iter().take(self.rank).for_each(|vector| values.extend_from_slice(vector));
         }
-        let width = values.len() / (self.clusters.each.len() * (1 + self.rank));
-        let book = Codebook::new([width as u32, self.clusters.each.len() as u32, self.rank as u32], &values);
+        let (clusters, rank) = (self.clusters.each.len() as u32, self.rank as u32);
+        let book = match sketch {
+            None => Codebook::new([columns as u32, clusters, rank], &values),
+            Some(sketch) => Codebook::factored([sketch.columns() as u32, clusters, rank], &values, sketch.vectors()),
+        };
         Compressed { book, clusters: of.into_iter().map(|c| c as u16).collect(), weights, error: 0.0 }
     }
 

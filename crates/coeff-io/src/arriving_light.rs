@@ -37,11 +37,7 @@ impl<'a> ArrivingLight<'a> {
         let (light, bounce) = match &gloss.bounced {
             Some(Bounced::Relightable { bands, channels }) => {
                 let light = light.with_bands(Bands::new(*bands).unwrap_or(light.bands)).values;
-                let of = |book: &Codebook| {
-                    let rows = book.values();
-                    let rows = rows.chunks_exact(light.len() * *channels as usize);
-                    (book.rank, rows.map(|row| sum(row, *channels, &light)).collect())
-                };
+                let of = |book: &Codebook| (book.rank, bounce_products(book, *channels, &light, functions));
                 let bounce = prt.codebooks.bounce.as_ref().map(of);
                 (light, bounce)
             }
@@ -176,6 +172,29 @@ impl DiffuseLight {
             }
         }
     }
+}
+
+/// `[cluster][mean, then vectors][function]`: what each of them answers to a light.
+///
+/// Where clusters share vectors the light is multiplied with those alone, and the rest is short combinations of the products.
+fn bounce_products(book: &Codebook, channels: u32, light: &[[f32; 3]], functions: usize) -> Vec<[f32; 3]> {
+    let numbers = light.len() * channels as usize;
+    let of = |rows: &[f32]| rows.chunks_exact(numbers).map(|row| sum(row, channels, light)).collect::<Vec<_>>();
+    if book.shared == 0 {
+        return of(&book.own());
+    }
+    let shared = of(&book.shared_vectors());
+    let mut out = Vec::new();
+    for own in book.own().chunks_exact(book.shared as usize) {
+        let start = out.len();
+        out.resize(start + functions, [0.0f32; 3]);
+        for (factor, products) in own.iter().zip(shared.chunks_exact(functions)) {
+            for (out, product) in out[start..].iter_mut().zip(products) {
+                *out = std::array::from_fn(|c| out[c] + factor * product[c]);
+            }
+        }
+    }
+    out
 }
 
 /// Hands out the products of a row of a clustered table with their weights.

@@ -27,6 +27,8 @@ pub struct CodebookHeader {
     pub clusters: u32,
     /// Vectors of each cluster beside its mean.
     pub rank: u32,
+    /// Vectors that all clusters share.
+    pub shared: u32,
 }
 
 /// [`Arriving`] without bytes.
@@ -106,7 +108,12 @@ impl ArrivingHeader {
 impl SurfacesHeader {
     pub(crate) fn of(prt: &Prt) -> Self {
         let Codebooks { diffuse, visibility, bounce } = &prt.codebooks;
-        let book = |book: &Codebook| CodebookHeader { columns: book.columns, clusters: book.clusters, rank: book.rank };
+        let book = |book: &Codebook| CodebookHeader {
+            columns: book.columns,
+            clusters: book.clusters,
+            rank: book.rank,
+            shared: book.shared,
+        };
         let level = |level: &TransferLevel| TransferLevelHeader {
             width: level.width,
             height: level.height,
@@ -199,9 +206,9 @@ impl Bytes {
     }
 
     fn book(&mut self, header: Option<CodebookHeader>) -> Result<Option<Codebook>, Error> {
-        let Some(CodebookHeader { columns, clusters, rank }) = header else { return Ok(None) };
+        let Some(CodebookHeader { columns, clusters, rank, shared }) = header else { return Ok(None) };
         let bytes = self.books.next().ok_or_else(|| self.missing("codebooks"))?;
-        Ok(Some(Codebook { columns, clusters, rank, bytes }))
+        Ok(Some(Codebook { columns, clusters, rank, shared, bytes }))
     }
 
     fn arriving(&mut self, header: ArrivingHeader) -> Result<Arriving, Error> {

@@ -39,7 +39,9 @@ pub struct Codebook {
     pub clusters: u32,
     /// Vectors of each cluster beside its mean; may be 0.
     pub rank: u32,
-    /// `[cluster][mean, then vectors][column]` f16.
+    /// Vectors that all clusters share, of which their means and vectors are combinations; 0 where these stand in full.
+    pub shared: u32,
+    /// `[cluster][mean, then vectors][column]` f16; with shared vectors `[cluster][mean, then vectors][shared]`, then `[shared][column]`.
     pub bytes: Vec<u8>,
 }
 
@@ -52,7 +54,41 @@ impl Codebook {
     pub fn new([columns, clusters, rank]: [u32; 3], values: &[f32]) -> Self {
         let expected = columns as usize * clusters as usize * (1 + rank as usize);
         assert_eq!(values.len(), expected, "a mean and vectors per cluster");
-        Self { columns, clusters, rank, bytes: halves(values) }
+        Self { columns, clusters, rank, shared: 0, bytes: halves(values) }
+    }
+
+    /// From means and vectors as combinations, `[cluster][mean, then vectors][shared]`, of shared vectors, `[shared][column]`.
+    ///
+    /// # Panics
+    /// When there are not as many values.
+    #[must_use]
+    pub fn factored([columns, clusters, rank]: [u32; 3], combinations: &[f32], vectors: &[f32]) -> Self {
+        let shared = vectors.len() / columns as usize;
+        let expected = shared * clusters as usize * (1 + rank as usize);
+        assert!(shared > 0 && vectors.len() == shared * columns as usize, "whole vectors");
+        assert_eq!(combinations.len(), expected, "a mean and vectors per cluster");
+        let mut bytes = halves(combinations);
+        bytes.extend(halves(vectors));
+        Self { columns, clusters, rank, shared: shared as u32, bytes }
+    }
+
+    /// Numbers of a mean or vector as it stands.
+    fn width(&self) -> usize {
+        if self.shared > 0 { self.shared as usize } else { self.columns as usize }
+    }
+
+    /// Means and vectors as they stand, `[cluster][mean, then vectors][column or shared]`.
+    #[must_use]
+    pub fn own(&self) -> Vec<f32> {
+        let count = self.clusters as usize * (1 + self.rank as usize) * self.width();
+        self.bytes[..2 * count].chunks_exact(2).map(half).collect()
+    }
+
+    /// The shared vectors, `[shared][column]`; empty where there are none.
+    #[must_use]
+    pub fn shared_vectors(&self) -> Vec<f32> {
+        let count = self.clusters as usize * (1 + self.rank as usize) * self.width();
+        if self.shared > 0 { self.bytes[2 * count..].chunks_exact(2).map(half).collect() } else { Vec::new() }
     }
 
     /// The mean (0) or a vector (from 1 on) of a cluster.
@@ -62,21 +98,50 @@ impl Codebook {
     #[must_use]
     pub fn vector(&self, cluster: u32, number: u32) -> Vec<f32> {
         assert!(cluster < self.clusters && number <= self.rank, "vector {number} of cluster {cluster}");
-        let columns = self.columns as usize;
-        let start = (cluster as usize * (1 + self.rank as usize) + number as usize) * columns;
-        self.bytes[2 * start..2 * (start + columns)].chunks_exact(2).map(half).collect()
+        let width = self.width();
+        let start = (cluster as usize * (1 + self.rank as usize) + number as usize) * width;
+        let own: Vec<f32> = self.bytes[2 * start..2 * (start + width)].chunks_exact(2).map(half).collect();
+        if self.shared > 0 { self.expanded(&own, &self.shared_vectors()) } else { own }
     }
 
-    /// All means and vectors, `[cluster][mean, then vectors][column]`.
+    /// All means and vectors in full, `[cluster][mean, then vectors][column]`.
     #[must_use]
     pub fn values(&self) -> Vec<f32> {
-        self.bytes.chunks_exact(2).map(half).collect()
+        let own = self.own();
+        if self.shared == 0 {
+            return own;
+        }
+        let vectors = self.shared_vectors();
+        own.chunks_exact(self.width()).flat_map(|own| self.expanded(own, &vectors)).collect()
+    }
+
+    /// Writes a mean and weighted vectors of a cluster; `shared` are the shared vectors.
+    fn combine(&self, cluster: u32, weights: impl Iterator<Item = f32>, shared: &[f32], out: &mut [f32]) {
+        let width = self.width();
+        let first = cluster as usize * (1 + self.rank as usize);
+        let mut own = vec![0.0f32; width];
+        for (number, weight) in (first..).zip(std::iter::once(1.0).chain(weights)) {
+            let vector = self.bytes[2 * number * width..2 * (number + 1) * width].chunks_exact(2).map(half);
+            own.iter_mut().zip(vector).for_each(|(x, v)| *x += weight * v);
+        }
+        let full = if self.shared > 0 { self.expanded(&own, shared) } else { own };
+        out.copy_from_slice(&full);
+    }
+
+    fn expanded(&self, own: &[f32], vectors: &[f32]) -> Vec<f32> {
+        let mut out = vec![0.0f32; self.columns as usize];
+        for (factor, vector) in own.iter().zip(vectors.chunks_exact(self.columns as usize)) {
+            out.iter_mut().zip(vector).for_each(|(x, v)| *x += factor * v);
+        }
+        out
     }
 
     /// What is wrong, in half a sentence; none where all is sound.
     pub(crate) fn fault(&self) -> Option<String> {
-        let sizes = [self.columns as usize, self.clusters as usize, 1 + self.rank as usize, 2];
-        let bytes = sizes.into_iter().try_fold(1_usize, |product, n| product.checked_mul(n));
+        let product = |sizes: [usize; 3]| sizes.into_iter().try_fold(2_usize, |product, n| product.checked_mul(n));
+        let own = product([self.width(), self.clusters as usize, (self.rank as usize).saturating_add(1)]);
+        let shared = product([self.shared as usize, self.columns as usize, 1]);
+        let bytes = own.zip(shared).and_then(|(own, shared)| own.checked_add(shared));
         if self.columns == 0 || !(1..=1 << 16).contains(&self.clusters) || bytes != Some(self.bytes.len()) {
             return Some(format!(
                 "{} bytes are not {} clusters of a mean and {} vectors of {} numbers",
@@ -152,11 +217,7 @@ impl Table {
             Form::Clustered => {
                 let book = book.expect("a clustered table has a book");
                 let cluster = u32::from(self.cluster(row));
-                out.copy_from_slice(&book.vector(cluster, 0));
-                for (number, weight) in (1..).zip(self.weights(book.rank, row)) {
-                    let vector = book.vector(cluster, number);
-                    out.iter_mut().zip(vector).for_each(|(x, v)| *x += weight * v);
-                }
+                book.combine(cluster, self.weights(book.rank, row), &book.shared_vectors(), out);
             }
         }
     }
@@ -168,6 +229,13 @@ impl Table {
     #[must_use]
     pub fn decode(&self, book: Option<&Codebook>) -> Vec<f32> {
         let mut values = vec![0.0; self.rows as usize * self.columns as usize];
+        if let (Form::Clustered, Some(book)) = (self.form, book) {
+            let shared = book.shared_vectors();
+            for (row, out) in (0..).zip(values.chunks_exact_mut(self.columns.max(1) as usize)) {
+                book.combine(u32::from(self.cluster(row)), self.weights(book.rank, row), &shared, out);
+            }
+            return values;
+        }
         for (row, out) in (0..).zip(values.chunks_exact_mut(self.columns.max(1) as usize)) {
             self.read(book, row, out);
         }
@@ -238,6 +306,20 @@ mod tests {
         assert_eq!(table.decode(Some(&book)), [-1.0, 1.0, 2.0, 1.0, -1.0, 0.0]);
         let wrong = Table::clustered(&book, &[2, 0, 1], &[0.0; 3]);
         assert!(wrong.fault(Some(&book)).is_some() && table.fault(None).is_some());
+    }
+
+    /// Shared vectors stand for vectors in full.
+    #[test]
+    fn factored_books_say_the_same() {
+        let shared = [1.0, 0.0, 2.0, 0.0, 1.0, -1.0];
+        let combinations = [1.0, 0.5, 0.0, 2.0, -1.0, 1.0, 0.5, 0.25];
+        let factored = Codebook::factored([3, 2, 1], &combinations, &shared);
+        let full = Codebook::new([3, 2, 1], &factored.values());
+        assert_eq!(factored.vector(0, 0), [1.0, 0.5, 1.5]);
+        let tables = [&factored, &full].map(|book| Table::clustered(book, &[1, 0], &[0.5, -1.0]).decode(Some(book)));
+        assert_eq!(tables[0], tables[1]);
+        assert!(factored.fault().is_none() && Codebook { shared: 1, ..factored.clone() }.fault().is_some());
+        assert_ne!(factored.values(), Codebook { shared: 0, columns: 2, ..factored }.own(), "can fail");
     }
 
     #[test]

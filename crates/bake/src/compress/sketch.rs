@@ -74,6 +74,11 @@ impl Sketch {
         self.vectors.len() / self.columns
     }
 
+    /// `[vector][column]`.
+    pub(crate) fn vectors(&self) -> &[f32] {
+        &self.vectors
+    }
+
     /// Numbers of a row.
     pub(crate) fn columns(&self) -> usize {
         self.columns

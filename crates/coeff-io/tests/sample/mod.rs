@@ -263,7 +263,7 @@ fn codebooks() -> Codebooks {
     Codebooks {
         diffuse: Some(Codebook::new([12, 2, 1], &some(48, 1))),
         visibility: Some(Codebook::new([9, 1, 2], &some(27, 2))),
-        bounce: Some(Codebook::new([9, 2, 0], &some(18, 3))),
+        bounce: Some(Codebook::factored([9, 2, 0], &some(6, 3), &some(27, 8))),
     }
 }
 
