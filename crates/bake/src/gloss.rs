@@ -94,14 +94,17 @@ impl Job<'_> {
             plan.layout = maker.layout(true, self.glossy && shiny);
         }
         self.check_memory(&maker, &plans, vertices.ids.len())?;
-        let rows = self.vertex_rows(&maker, &vertices, &mut record)?;
+        let mut lost = [0.0; 2];
+        let rows = self.vertex_rows(&maker, &vertices, &mut record, &mut lost)?;
         let baked = match &self.extras.textures {
-            Some(settings) => sheets::bake(self.done, self.arrivals, &maker, settings, &plans, &mut record)?,
+            Some(settings) => sheets::bake(self.done, self.arrivals, &maker, settings, &plans, &mut record, &mut lost)?,
             None => Vec::new(),
         };
         self.done.monitor.check()?;
         let bounced = self.bounced(&maker);
-        tables::write(self, &maker, tables::Found { plans, baked, vertices, rows, bounced }, record, prt);
+        let sketched = if lost[1] > 0.0 { (lost[0] / lost[1]).sqrt() as f32 } else { 0.0 };
+        let found = tables::Found { plans, baked, vertices, rows, bounced, sketched };
+        tables::write(self, &maker, found, record, prt);
         Ok(())
     }
 
@@ -173,19 +176,23 @@ impl Job<'_> {
         maker: &RowMaker<'_>,
         vertices: &Vertices,
         record: &mut GlossRecord,
+        lost: &mut [f64; 2],
     ) -> Result<Vec<f32>, Error> {
         let layout = maker.layout(false, true);
         let points = vertices.points(self.done);
         record.vertices = points.len() as u64;
         let keep = |k: usize, arrival: Arrival| {
             let rays = [arrival.visibility_rays, arrival.bounce_rays];
-            (maker.make(layout, &arrival, points[k].normal), rays)
+            let row = maker.make(layout, &arrival, points[k].normal);
+            let lost = maker.lost(layout, &arrival, &row);
+            (row, rays, lost)
         };
         let found = arrive_as(self.done, self.arrivals, (&points, Stage::Gloss), &|k| vertices.ids[k], &keep)?;
-        for (_, rays) in &found {
+        for (_, rays, own) in &found {
             record.rays = [record.rays[0] + rays[0], record.rays[1] + rays[1]];
+            *lost = [lost[0] + own[0], lost[1] + own[1]];
         }
-        Ok(found.into_iter().flat_map(|(row, _)| row).collect())
+        Ok(found.into_iter().flat_map(|(row, _, _)| row).collect())
     }
 
     /// Learns what rows of bounces have in common from receivers spread evenly over all.

@@ -56,7 +56,7 @@ pub(crate) fn volume_alone(volume: &Volume) -> Result<(), Error> {
 
 /// Knows where each kind of chunk lies.
 pub(crate) struct Check<'a> {
-    chunks: &'a [Chunk],
+    pub(crate) chunks: &'a [Chunk],
 }
 
 impl Check<'_> {

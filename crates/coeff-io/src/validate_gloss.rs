@@ -6,6 +6,20 @@ use crate::validate::{Check, LARGEST_SIDE};
 use crate::{Arriving, Bounced, Error, Gloss, Prt, Table, TransferLevel, TransferTextures};
 use sh_math::Bands;
 
+impl Prt {
+    /// What is wrong with gloss, transfer textures and codebooks, or does not fit the meshes, in half a sentence; none where all can be drawn.
+    ///
+    /// A file that was read is sound; renderers ask it of what was made in memory.
+    #[must_use]
+    pub fn surfaces_fault(&self) -> Option<String> {
+        match (Check { chunks: &[] }).surfaces(self) {
+            Ok(()) => None,
+            Err(Error::Invalid { what, .. }) => Some(what),
+            Err(other) => Some(other.to_string()),
+        }
+    }
+}
+
 impl Check<'_> {
     /// All of it.
     pub(crate) fn surfaces(&self, prt: &Prt) -> Result<(), Error> {

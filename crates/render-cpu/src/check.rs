@@ -1,6 +1,6 @@
 //! Whether the parts of a baked scene fit each other, before a sample indexes them.
 
-use crate::{Error, check_gloss};
+use crate::Error;
 use coeff_io::{Geometry, Material, Prt};
 
 /// Checks lengths and indices of everything that drawing reads.
@@ -26,7 +26,7 @@ pub(crate) fn check(prt: &Prt) -> Result<(), Error> {
     if let Some(fault) = prt.maps.as_ref().and_then(|maps| maps.fault(prt)) {
         return refuse(fault);
     }
-    if let Some(fault) = check_gloss::fault(prt) {
+    if let Some(fault) = prt.surfaces_fault() {
         return refuse(fault);
     }
     prt.materials.iter().try_for_each(|material| check_slots(material, prt.textures.len()))?;

@@ -10,7 +10,6 @@ mod bins;
 mod bloom;
 mod brdf;
 mod check;
-mod check_gloss;
 mod clip;
 mod error;
 mod facet;

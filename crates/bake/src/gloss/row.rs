@@ -80,6 +80,17 @@ impl RowMaker<'_> {
         self.gloss.coefficients() * self.light.coefficients() * self.channels
     }
 
+    /// Sums of squares of an arrival's bounces: what a sketch leaves out, and all of it.
+    pub(crate) fn lost(&self, layout: Layout, arrival: &Arrival, row: &[f32]) -> [f64; 2] {
+        let Bouncing::Sketched(_) = self.bouncing else { return [0.0; 2] };
+        if layout.tables == 0 {
+            return [0.0; 2];
+        }
+        let square = |values: &[f32]| values.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>();
+        let (all, kept) = (square(&arrival.bounced[..self.long()]), square(&row[layout.bounces(0)]));
+        [(all - kept).max(0.0), all]
+    }
+
     /// What of an arrival a row of `layout` keeps; diffuse transfer is about a unit normal.
     pub(crate) fn make(&self, layout: Layout, arrival: &Arrival, normal: Vec3) -> Vec<f32> {
         let mut row = Vec::with_capacity(layout.len());

@@ -29,12 +29,22 @@ pub(crate) struct BakedSheet {
     pub(crate) levels: Vec<Plate>,
 }
 
+/// Where it is written down what texels took and reached.
+struct Told<'a> {
+    record: &'a mut GlossRecord,
+    /// Of each texel.
+    errors: &'a mut Vec<f32>,
+    /// Sums of squares: what a sketch left out of bounces, and all of them.
+    lost: &'a mut [f64; 2],
+}
+
 /// What is kept of a texel.
 struct Kept {
     row: Vec<f32>,
     is_inside: bool,
     error: f32,
     rays: [u64; 2],
+    lost: [f64; 2],
 }
 
 /// The texels that surfaces touch, and what is kept of them.
@@ -56,12 +66,14 @@ pub(crate) fn bake(
     settings: &TextureSettings,
     plans: &[SheetPlan],
     record: &mut GlossRecord,
+    lost: &mut [f64; 2],
 ) -> Result<Vec<BakedSheet>, Error> {
     let mut plates = Vec::new();
     let mut errors = Vec::new();
     let mut first_index = 0u32;
     for plan in plans {
-        let mut plate = gather(done, arrivals, maker, settings, plan, first_index, (record, &mut errors))?;
+        let told = Told { record, errors: &mut errors, lost };
+        let mut plate = gather(done, arrivals, maker, settings, plan, first_index, told)?;
         first_index = first_index.wrapping_add(plan.settings.width * plan.settings.height);
         plate.mend();
         record.unfilled += fill_from_vertices(done, maker, plan, &mut plate) as u64;
@@ -90,16 +102,20 @@ fn gather(
     settings: &TextureSettings,
     plan: &SheetPlan,
     first_index: u32,
-    (record, errors): (&mut GlossRecord, &mut Vec<f32>),
+    Told { record, errors, lost }: Told<'_>,
 ) -> Result<Plate, Error> {
     let sheet = &plan.settings;
     let points: Vec<Receiver> = plan.texels.iter().map(|texel| receiver(done, texel)).collect();
     let index = |k: usize| seed(first_index, plan, k);
-    let keep = |k: usize, arrival: Arrival| Kept {
-        row: maker.make(plan.layout, &arrival, lit_about(done, settings, &plan.texels[k], points[k].normal)),
-        is_inside: is_inside(arrival.openness, arrival.inside_share) || !points[k].sound,
-        error: arrival.error,
-        rays: [arrival.visibility_rays, arrival.bounce_rays],
+    let keep = |k: usize, arrival: Arrival| {
+        let row = maker.make(plan.layout, &arrival, lit_about(done, settings, &plan.texels[k], points[k].normal));
+        Kept {
+            lost: maker.lost(plan.layout, &arrival, &row),
+            row,
+            is_inside: is_inside(arrival.openness, arrival.inside_share) || !points[k].sound,
+            error: arrival.error,
+            rays: [arrival.visibility_rays, arrival.bounce_rays],
+        }
     };
     let found = arrive_as(done, arrivals, (&points, Stage::Texels), &index, &keep)?;
     let mut plate = Plate::empty([sheet.width as usize, sheet.height as usize], plan.layout.len());
@@ -108,6 +124,7 @@ fn gather(
     for (texel, kept) in plan.texels.iter().zip(found) {
         let place = texel.row as usize * plate.width + texel.column as usize;
         record.rays = [record.rays[0] + kept.rays[0], record.rays[1] + kept.rays[1]];
+        *lost = [lost[0] + kept.lost[0], lost[1] + kept.lost[1]];
         if kept.is_inside {
             plate.owner[place] = chart(texel);
             record.inside += 1;

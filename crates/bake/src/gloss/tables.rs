@@ -23,6 +23,8 @@ pub(super) struct Found {
     /// `[vertex][number]`.
     pub(super) rows: Vec<f32>,
     pub(super) bounced: Option<Bounced>,
+    /// Relative error of the sketch of bounces, over all receivers.
+    pub(super) sketched: f32,
 }
 
 /// Rows of several tables that share a codebook.
@@ -68,7 +70,7 @@ pub(super) fn write(job: &Job<'_>, maker: &RowMaker<'_>, found: Found, mut recor
     let mut diffuse = diffuse.coded(aim);
     let mut visibility = visibility.coded(aim);
     let mut bounces = match &maker.bouncing {
-        Bouncing::Sketched(sketch) => bounces.coded_sketched(sketch, job.extras.compression.bounces),
+        Bouncing::Sketched(sketch) => bounces.coded_sketched(sketch, job.extras.compression.bounces, found.sketched),
         _ => bounces.coded(None),
     };
     record.compression = [diffuse.error, visibility.error, bounces.error];
@@ -186,14 +188,15 @@ impl Rows {
     }
 
     /// Rows that are kept by the vectors of a sketch: always by a codebook, in the worst case that of the sketch itself.
-    fn coded_sketched(self, sketch: &crate::compress::Sketch, error: f32) -> Coded {
+    fn coded_sketched(self, sketch: &crate::compress::Sketch, error: f32, sketched: f32) -> Coded {
         if self.sets.is_empty() {
             return Coded { book: None, tables: Vec::new().into_iter(), error: 0.0 };
         }
         let aim = Aim { error, most_clusters: MOST_CLUSTERS, most_rank: MOST_RANK };
         let all = compress_sketched(&self.sets.concat(), sketch, &aim);
         let tables = self.split(&all.book, &all.clusters, &all.weights);
-        Coded { book: Some(all.book), tables: tables.into_iter(), error: all.error }
+        let error = (all.error * all.error + sketched * sketched).sqrt();
+        Coded { book: Some(all.book), tables: tables.into_iter(), error }
     }
 
     fn split(&self, book: &Codebook, clusters: &[u16], weights: &[f32]) -> Vec<Table> {
