@@ -146,5 +146,6 @@ fn for_gpu(frame: &Frame) -> render_wgpu::Frame {
         basis: frame.basis,
         functions: frame.functions,
         gloss: frame.gloss,
+        early_depth: true,
     }
 }

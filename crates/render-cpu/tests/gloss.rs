@@ -285,7 +285,7 @@ fn tables_that_do_not_fit_are_refused() {
     type Edit = fn(&mut Prt);
     let edits: [(&str, Edit); 4] = [
         ("beyond the rows", |prt| prt.meshes[0].vertices += 1),
-        ("does not hold", |prt| {
+        ("are not 6 rows", |prt| {
             prt.gloss.as_mut().unwrap().vertices.as_mut().unwrap().arriving.visibility.bytes.clear();
         }),
         ("bands of gloss", |prt| prt.gloss.as_mut().unwrap().bands = 0),

@@ -1,11 +1,11 @@
 // Surfaces that mirror the light probe. Mirrors the specular term of render-cpu; docs/shading.md, Surface 6.
-// Needs view.wgsl, equirect.wgsl, brdf.wgsl and surface.wgsl.
+// Needs view.wgsl, equirect.wgsl, brdf.wgsl and surface.wgsl, and `specular_light` of mirror.wgsl or gloss_texels.wgsl.
 
 // One layer per level of roughness, all of one size; read texel by texel so that columns wrap exactly.
 @group(2) @binding(0) var reflection: texture_2d_array<f32>;
 
 struct Shiny {
-    @builtin(position) clip: vec4<f32>,
+    @invariant @builtin(position) clip: vec4<f32>,
     // The fourth is openness.
     @location(0) lit: vec4<f32>,
     @location(1) uv: vec4<f32>,
@@ -34,6 +34,7 @@ fn place_shiny(
 
 @fragment
 fn draw_shiny(at: Shiny) -> @location(0) vec4<f32> {
+    view_depth = 1.0 / at.clip.w;
     // Derivatives first: they need the neighbours that a mask may end.
     let across = cross(dpdx(at.offset), dpdy(at.offset));
     let point = surface(at.uv, at.color);
@@ -41,16 +42,27 @@ fn draw_shiny(at: Shiny) -> @location(0) vec4<f32> {
     // Backs are not drawn, so the geometric normal looks at the eye.
     let geometric = across * select(-1.0, 1.0, dot(across, to_eye) > 0.0);
     let normal = shading_normal(at, geometric);
-    let specular = mirrored(point, normal, to_eye) * saturate(at.lit.w);
+    let specular = specular_light(point, normal, unit_or(at.normal, geometric), to_eye, at);
     return composite(point, diffuse_light(at.lit.rgb, at.uv), specular, glow(at.uv));
+}
+
+// Depth alone: only a mask looks at the surface.
+@fragment
+fn cut_shiny(at: Shiny) {
+    _ = surface(at.uv, at.color);
 }
 
 fn mirrored(point: Point, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let cosine = dot(normal, to_eye);
     let direction = view.light_from_world * (2.0 * cosine * normal - to_eye);
+    return reflected(normalize(direction), point.roughness) * returned(point, cosine);
+}
+
+// Share of mirrored light that is returned.
+fn returned(point: Point, cosine: f32) -> vec3<f32> {
     let f0 = mix(vec3<f32>(0.04), point.base.rgb, point.metallic);
     let albedo = environment_brdf(point.roughness, min(abs(cosine), 1.0));
-    return reflected(normalize(direction), point.roughness) * (f0 * albedo.x + albedo.y);
+    return f0 * albedo.x + albedo.y;
 }
 
 fn shading_normal(at: Shiny, geometric: vec3<f32>) -> vec3<f32> {

@@ -1,5 +1,5 @@
 // Diffuse surfaces: textures, masks, opacity. Mirrors the surface shading of render-cpu; docs/shading.md, Surface 1 to 5.
-// Needs view.wgsl, and `diffuse_light` of vertex_light.wgsl or sheet.wgsl.
+// Needs view.wgsl, and `diffuse_light` of vertex_light.wgsl, sheet.wgsl or transfer.wgsl.
 struct Slot {
     // Rows of the transform of (u, v, 1); the fourth of the first is 1 for the second set of coordinates.
     u: vec4<f32>,
@@ -41,8 +41,11 @@ override fades: bool = false;
 @group(1) @binding(7) var normal_sampler: sampler;
 @group(1) @binding(8) var glow_sampler: sampler;
 
+// Depth of the fragment along the view, for levels of detail.
+var<private> view_depth: f32 = 1.0;
+
 struct Diffuse {
-    @builtin(position) clip: vec4<f32>,
+    @invariant @builtin(position) clip: vec4<f32>,
     @location(0) lit: vec3<f32>,
     // Both sets of texture coordinates.
     @location(1) uv: vec4<f32>,
@@ -62,8 +65,15 @@ fn place_diffuse(
 
 @fragment
 fn draw_diffuse(at: Diffuse) -> @location(0) vec4<f32> {
+    view_depth = 1.0 / at.clip.w;
     let point = surface(at.uv, at.color);
     return composite(point, diffuse_light(at.lit, at.uv), vec3<f32>(0.0), glow(at.uv));
+}
+
+// Depth alone: only a mask looks at the surface.
+@fragment
+fn cut_diffuse(at: Diffuse) {
+    _ = surface(at.uv, at.color);
 }
 
 struct Point {

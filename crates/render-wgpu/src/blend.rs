@@ -16,8 +16,8 @@ pub(crate) struct Blended {
 struct Triangle {
     corners: [Vec3; 3],
     indices: [u32; 3],
-    material: u32,
-    sheet: Option<u32>,
+    /// How it is drawn, without triangles.
+    kind: Draw,
 }
 
 impl Blended {
@@ -30,7 +30,7 @@ impl Blended {
             .map(|(draw, triangle)| {
                 let indices = prt.geometry.triangles[triangle as usize];
                 let corners = indices.map(position);
-                Triangle { corners, indices, material: draw.material, sheet: draw.sheet }
+                Triangle { corners, indices, kind: draw.kind() }
             })
             .collect::<Vec<_>>();
         if triangles.is_empty() {
@@ -55,10 +55,9 @@ impl Blended {
         gpu.queue.write_buffer(&self.indices, 0, bytemuck::cast_slice(&indices));
         let mut draws: Vec<Draw> = Vec::new();
         for (place, triangle) in (0..).zip(order.iter().map(|&i| &self.triangles[i])) {
-            let &Triangle { material, sheet, .. } = triangle;
             match draws.last_mut() {
-                Some(draw) if draw.material == material && draw.sheet == sheet => draw.triangles.end = place + 1,
-                _ => draws.push(Draw { material, sheet, triangles: place..place + 1 }),
+                Some(draw) if draw.kind() == triangle.kind => draw.triangles.end = place + 1,
+                _ => draws.push(Draw { triangles: place..place + 1, ..triangle.kind.clone() }),
             }
         }
         draws

@@ -11,6 +11,9 @@ pub(crate) fn check(prt: &Prt) -> Result<(), Error> {
     if let Some(fault) = prt.maps.as_ref().and_then(|maps| maps.fault(prt)) {
         return Err(Error::invalid("the file", format!("{fault}; bake the scene again")));
     }
+    if let Some(fault) = prt.surfaces_fault() {
+        return Err(Error::invalid("the file", format!("{fault}; bake the scene again")));
+    }
     for texture in &prt.textures {
         if texture.rgba.len() as u64 != u64::from(texture.width) * u64::from(texture.height) {
             let problem = format!("{} texels do not fill {}x{}", texture.rgba.len(), texture.width, texture.height);

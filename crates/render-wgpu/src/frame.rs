@@ -37,6 +37,8 @@ pub struct Frame {
     pub functions: Option<u32>,
     /// How surfaces that shine are drawn.
     pub gloss: coeff_io::GlossView,
+    /// Whether the depth of surfaces is drawn before them where gloss is evaluated at fragments, so that none is evaluated in vain.
+    pub early_depth: bool,
 }
 
 impl Frame {
@@ -58,6 +60,7 @@ impl Frame {
             basis: None,
             functions: None,
             gloss: coeff_io::GlossView::default(),
+            early_depth: true,
         }
     }
 

@@ -15,6 +15,8 @@ pub(crate) enum Attribute {
     Normal,
     Tangent,
     Openness,
+    /// Row of gloss.
+    Row,
 }
 
 impl Attribute {
@@ -30,6 +32,7 @@ impl Attribute {
             Self::Uv0 | Self::Uv1 => wgpu::VertexFormat::Float32x2,
             Self::Color | Self::Tangent => wgpu::VertexFormat::Float32x4,
             Self::Openness => wgpu::VertexFormat::Float32,
+            Self::Row => wgpu::VertexFormat::Uint32,
         }
     }
 }
@@ -52,7 +55,14 @@ pub(crate) struct Geometry {
 
 impl Geometry {
     /// Uploads what the file holds; normals, tangents and openness only where `shines`. `lit` are the vertices' colours.
-    pub(crate) fn new(gpu: &Gpu, prt: &Prt, lit: wgpu::Buffer, shines: bool) -> Result<Self, Error> {
+    /// `rows` are those of gloss, where vertices that shine have any.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        prt: &Prt,
+        lit: wgpu::Buffer,
+        shines: bool,
+        rows: Option<wgpu::Buffer>,
+    ) -> Result<Self, Error> {
         let geometry = &prt.geometry;
         let mut streams = vec![
             stream(gpu, "positions", &geometry.positions, [0.0; 4])?,
@@ -65,6 +75,7 @@ impl Geometry {
             streams.push(stream(gpu, "normals", &geometry.normals, [0.0; 4])?);
             streams.push(stream(gpu, "tangents", &geometry.tangents, [0.0; 4])?);
             streams.push(stream(gpu, "openness", &prt.transfer.openness, [1.0; 4])?);
+            streams.extend(rows.map(|buffer| Stream { buffer, step: wgpu::VertexStepMode::Vertex }));
         }
         let triangles = buffer(gpu, "triangles", bytemuck::cast_slice(&geometry.triangles), wgpu::BufferUsages::INDEX)?;
         Ok(Self { streams, triangles })

@@ -67,6 +67,46 @@ pub(crate) struct Strip {
     pub(crate) stored: u32,
 }
 
+/// A run of receivers (gloss_rows.wgsl).
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+pub(crate) struct Rows {
+    pub(crate) count: u32,
+    pub(crate) functions: u32,
+    pub(crate) rank: u32,
+    pub(crate) width: u32,
+    pub(crate) first: u32,
+}
+
+/// What is the same for all gloss of a frame (gloss_frame.wgsl).
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct GlossFrame {
+    pub(crate) pixel: f32,
+    pub(crate) roughness: f32,
+    pub(crate) level: f32,
+    pub(crate) tail: f32,
+}
+
+/// Levels of a transfer texture (transfer.wgsl).
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+pub(crate) struct Detail {
+    pub(crate) density: f32,
+    pub(crate) last: f32,
+    pub(crate) unused: [f32; 2],
+}
+
+/// One triple product (gloss_tp.wgsl).
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+pub(crate) struct Triple {
+    pub(crate) lobe: u32,
+    pub(crate) light: u32,
+    pub(crate) visibility: u32,
+    pub(crate) value: f32,
+}
+
 /// A disc of light in the sky (sky.wgsl).
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
@@ -91,7 +131,9 @@ pub(crate) struct Post {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gloss::GlossKind;
     use crate::shaders;
+    use coeff_io::GlossWay;
 
     /// Names with offsets of a structure, and its size.
     type Layout = (Vec<(String, u32)>, u32);
@@ -103,8 +145,8 @@ mod tests {
         )};
     }
 
-    fn wgsl_layout(shader: shaders::Shader, name: &str) -> Layout {
-        let module = naga::front::wgsl::parse_str(shader.text).expect("valid WGSL");
+    fn wgsl_layout(shader: &shaders::Shader, name: &str) -> Layout {
+        let module = naga::front::wgsl::parse_str(&shader.text).expect("valid WGSL");
         let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
         let (_, ty) = found.unwrap_or_else(|| panic!("{name} stands in {}", shader.name));
         let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is a structure") };
@@ -133,20 +175,28 @@ mod tests {
             glow
         );
         for shader in [shaders::surface(false, None), shaders::surface(true, None)] {
-            assert_eq!(wgsl_layout(shader, "View"), view_layout(), "View in {}", shader.name);
-            assert_eq!(wgsl_layout(shader, "Material"), material, "Material in {}", shader.name);
+            assert_eq!(wgsl_layout(&shader, "View"), view_layout(), "View in {}", shader.name);
+            assert_eq!(wgsl_layout(&shader, "Material"), material, "Material in {}", shader.name);
         }
-        assert_eq!(wgsl_layout(shaders::SKY, "View"), view_layout(), "View in sky");
-        assert_eq!(wgsl_layout(shaders::surface(true, None), "Slot"), rust_layout!(Slot, u, v), "Slot");
-        assert_eq!(wgsl_layout(shaders::RELIGHT, "Chunk"), rust_layout!(Chunk, vertices, coefficients), "Chunk");
+        assert_eq!(wgsl_layout(&shaders::SKY, "View"), view_layout(), "View in sky");
+        assert_eq!(wgsl_layout(&shaders::surface(true, None), "Slot"), rust_layout!(Slot, u, v), "Slot");
+        assert_eq!(wgsl_layout(&shaders::RELIGHT, "Chunk"), rust_layout!(Chunk, vertices, coefficients), "Chunk");
         let strip = rust_layout!(Strip, width, rows, first_row, stored);
-        assert_eq!(wgsl_layout(shaders::SHEET_FILL, "Strip"), strip, "Strip");
+        assert_eq!(wgsl_layout(&shaders::SHEET_FILL, "Strip"), strip, "Strip");
         let lamp = rust_layout!(Lamp, direction, chord_squared, radiance);
-        assert_eq!(wgsl_layout(shaders::SKY, "Lamp"), lamp, "Lamp");
+        assert_eq!(wgsl_layout(&shaders::SKY, "Lamp"), lamp, "Lamp");
         let post = rust_layout!(Post, exposure, supersample, bloom, levels, largest);
         for shader in [shaders::RESOLVE, shaders::BLOOM] {
-            assert_eq!(wgsl_layout(shader, "Post"), post, "Post in {}", shader.name);
+            assert_eq!(wgsl_layout(&shader, "Post"), post, "Post in {}", shader.name);
         }
+        let rows = rust_layout!(Rows, count, functions, rank, width, first);
+        assert_eq!(wgsl_layout(&shaders::GLOSS_ROWS, "Rows"), rows);
+        let texels = GlossKind::Texels(GlossWay::Tp);
+        let glossy = shaders::glossy(texels, true, sh_math::Bands::new(5));
+        let frame = rust_layout!(GlossFrame, pixel, roughness, level, tail);
+        assert_eq!(wgsl_layout(&glossy, "GlossFrame"), frame);
+        assert_eq!(wgsl_layout(&glossy, "Detail"), rust_layout!(Detail, density, last, unused));
+        assert_eq!(wgsl_layout(&glossy, "Triple"), rust_layout!(Triple, lobe, light, visibility, value));
     }
 
     #[test]
@@ -159,6 +209,6 @@ mod tests {
             right: [f32; 3],
         }
         let unpadded: Layout = rust_layout!(Unpadded, eye, near, forward, right);
-        assert_ne!(wgsl_layout(shaders::SKY, "View"), unpadded, "a structure without its padding must be noticed");
+        assert_ne!(wgsl_layout(&shaders::SKY, "View"), unpadded, "a structure without its padding must be noticed");
     }
 }

@@ -1,7 +1,9 @@
 //! Materials on the GPU: numbers, textures, and which pipeline they call for.
 
+use crate::gloss::GlossKind;
 use crate::texture::{Encoding, Textures};
 use crate::{Error, Gpu, geometry, gpu_data};
+use coeff_io::GlossWay;
 use coeff_io::{AlphaMode, Material, Prt, TextureSlot};
 use sh_math::hemisphere::Basis;
 
@@ -22,6 +24,12 @@ pub(crate) struct Variant {
     pub(crate) glow_textured: bool,
     /// Lit by a light map in this basis, else by the vertices.
     pub(crate) basis: Option<Basis>,
+    /// Gloss or a transfer texture.
+    pub(crate) gloss: Option<GlossKind>,
+    /// Whether surfaces send light to those that shine.
+    pub(crate) bounced: bool,
+    /// Whether depth was drawn before.
+    pub(crate) early: bool,
 }
 
 impl Variant {
@@ -38,6 +46,9 @@ impl Variant {
             normal_textured: material.specular && has_tangents && material.normal_texture.is_some(),
             glow_textured: material.emissive_texture.is_some(),
             basis: None,
+            gloss: None,
+            bounced: false,
+            early: false,
         }
     }
 
@@ -54,7 +65,10 @@ impl Variant {
             ("fades", self.fades),
         ]
         .map(|(name, on)| (name, f64::from(u8::from(on))));
-        switches.into_iter().chain(functions).collect()
+        let product = |way| way != GlossWay::Cache;
+        let products = matches!(self.gloss, Some(GlossKind::Texels(way) | GlossKind::Vertices(way)) if product(way));
+        let bounced = products.then_some(("bounced", f64::from(u8::from(self.bounced))));
+        switches.into_iter().chain(functions).chain(bounced).collect()
     }
 }
 
@@ -100,8 +114,13 @@ fn mapped(prt: &Prt) -> Vec<bool> {
 
 /// The layout of a material's bindings (group 1 of surface.wgsl).
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry =
-        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
+    // Gloss at vertices asks for the roughness there.
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty,
+        count: None,
+    };
     let numbers = wgpu::BindingType::Buffer {
         ty: wgpu::BufferBindingType::Uniform,
         has_dynamic_offset: false,

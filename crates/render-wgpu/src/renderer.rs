@@ -1,12 +1,13 @@
 //! A baked scene under a light probe, ready to be drawn again and again.
 
 use crate::finish::Finish;
+use crate::gloss::Gloss;
 use crate::readback::Readback;
 use crate::relight::Relight;
 use crate::surface::{Layouts, Surfaces};
 use crate::targets::{Size, Targets};
 use crate::{Error, Frame, Gpu, Image, check, gpu_data, material, picture, reflection, sky::Sky, surface, view};
-use coeff_io::Prt;
+use coeff_io::{GlossWay, Prt};
 use glam::Quat;
 use probe_io::Environment;
 use sh_math::{Bands, Rgb, hemisphere::Basis};
@@ -92,7 +93,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::Invalid`] for a frame that makes no sense, [`Error::TooLarge`] for one beyond the GPU's limits.
     pub fn draw(&mut self, frame: &Frame) -> Result<Image, Error> {
-        let basis = frame.check_for(self.surfaces.maps())?;
+        let basis = self.check(frame)?;
         let gpu = self.gpu.clone();
         gpu.guarded("drawing", || {
             let mut encoder = self.record(frame, basis)?;
@@ -114,7 +115,7 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::draw`].
     pub fn time(&mut self, frame: &Frame) -> Result<Timings, Error> {
-        let basis = frame.check_for(self.surfaces.maps())?;
+        let basis = self.check(frame)?;
         let gpu = self.gpu.clone();
         gpu.guarded("drawing", || {
             let start = Instant::now();
@@ -125,6 +126,21 @@ impl Renderer {
             gpu.wait()?;
             Ok(Timings { relit, record, frame: start.elapsed() })
         })
+    }
+
+    /// What of a frame cannot be shown; the basis that its light maps are drawn in, if it has any.
+    fn check(&self, frame: &Frame) -> Result<Option<Basis>, Error> {
+        let basis = frame.check_for(self.surfaces.maps())?;
+        if let Some(gloss) = self.surfaces.gloss() {
+            gloss.check(frame, &self.light)?;
+        }
+        Ok(basis)
+    }
+
+    /// How gloss was multiplied in the last frame; none where the file holds none.
+    #[must_use]
+    pub fn gloss_way(&self) -> Option<GlossWay> {
+        self.surfaces.gloss().filter(|gloss| gloss.bands().is_some()).map(Gloss::way)
     }
 
     /// Coefficients of the light as it lies, not turned.
@@ -161,6 +177,7 @@ impl Renderer {
             self.lit_for = Some(frame.rotation);
         }
         self.surfaces.light_maps(&gpu, &mut encoder, &self.light, frame.rotation, basis)?;
+        self.surfaces.put_on_gloss(&gpu, &mut encoder, &self.light, frame)?;
         let view = view::view(frame, self.near, picture::largest(self.format));
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.record_scene(&mut encoder, &targets, &view, frame.sky);
@@ -170,6 +187,11 @@ impl Renderer {
     }
 
     fn record_scene(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &gpu_data::View, sky: bool) {
+        let early = self.surfaces.is_early();
+        if early {
+            self.record_depth(encoder, targets);
+        }
+        let depth = if early { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -180,7 +202,7 @@ impl Renderer {
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                depth_ops: Some(wgpu::Operations { load: depth, store: wgpu::StoreOp::Discard }),
                 stencil_ops: None,
             }),
             ..Default::default()
@@ -191,6 +213,21 @@ impl Renderer {
             self.sky.draw(&mut pass);
         }
         self.surfaces.draw_blended(&self.gpu, &mut pass, view);
+    }
+
+    /// The depth of opaque surfaces alone.
+    fn record_depth(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("depth"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &targets.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.view_bindings, &[]);
+        self.surfaces.draw_depth(&mut pass);
     }
 }
 

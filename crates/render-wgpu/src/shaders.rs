@@ -1,10 +1,10 @@
 //! The shader modules: WGSL files put together, without any preprocessor.
 
 /// A named module: its name in error messages and its whole text.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Shader {
     pub(crate) name: &'static str,
-    pub(crate) text: &'static str,
+    pub(crate) text: Cow<'static, str>,
 }
 
 /// Surfaces of one kind of diffuse light: without shine, and with a mirror of the light probe.
@@ -14,7 +14,7 @@ macro_rules! surfaces {
             shader!(concat!("diffuse, ", $name), "view.wgsl", "surface.wgsl", $($light),+),
             shader!(
                 concat!("shiny, ", $name),
-                "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl", $($light),+
+                "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl", "mirror.wgsl", $($light),+
             ),
         ]
     };
@@ -22,16 +22,22 @@ macro_rules! surfaces {
 
 macro_rules! shader {
     ($name:expr, $($file:literal),+) => {
-        Shader { name: $name, text: concat!($(include_str!(concat!("../shaders/", $file))),+) }
+        Shader { name: $name, text: Cow::Borrowed(concat!($(include_str!(concat!("../shaders/", $file))),+)) }
     };
 }
 
-use sh_math::hemisphere::Basis;
+use crate::gloss::GlossKind;
+use crate::gloss_text;
+use coeff_io::GlossWay;
+use sh_math::{Bands, hemisphere::Basis};
+use std::borrow::Cow;
 
 /// Dot products of transfer and light.
 pub(crate) const RELIGHT: Shader = shader!("relight", "relight.wgsl");
 /// Coefficients of light maps in the basis that is drawn.
 pub(crate) const SHEET_FILL: Shader = shader!("sheet fill", "sheet_fill.wgsl");
+/// Receivers of gloss and transfer textures under a light.
+pub(crate) const GLOSS_ROWS: Shader = shader!("gloss rows", "gloss_rows.wgsl");
 /// The light probe behind the scene.
 pub(crate) const SKY: Shader = shader!("sky", "view.wgsl", "equirect.wgsl", "fullscreen.wgsl", "sky.wgsl");
 /// Samples to pixels.
@@ -65,22 +71,74 @@ pub(crate) fn surface(shiny: bool, basis: Option<Basis>) -> Shader {
         Some(Basis::H4 | Basis::H6) => 6,
         Some(Basis::ModifiedH1 | Basis::ModifiedH4 | Basis::ModifiedH6) => 7,
     };
-    SURFACES[family][usize::from(shiny)]
+    SURFACES[family][usize::from(shiny)].clone()
 }
+
+/// Surfaces with gloss or transfer textures, for files of so many bands of gloss.
+pub(crate) fn glossy(kind: GlossKind, shiny: bool, bands: Option<Bands>) -> Shader {
+    let plain = match kind {
+        GlossKind::Diffuse => return DIFFUSE_TEXELS[usize::from(shiny)].clone(),
+        GlossKind::Texels(GlossWay::Tp) => TEXELS_TP,
+        GlossKind::Texels(GlossWay::Tpfl) => TEXELS_TPFL,
+        GlossKind::Texels(GlossWay::Cache) => TEXELS_CACHE,
+        GlossKind::Vertices(GlossWay::Tp) => VERTICES_TP,
+        GlossKind::Vertices(GlossWay::Tpfl) => VERTICES_TPFL,
+        GlossKind::Vertices(GlossWay::Cache) => VERTICES_CACHE,
+    };
+    let functions = bands.map_or(String::new(), gloss_text::functions);
+    Shader { name: plain.name, text: Cow::Owned(functions + &plain.text) }
+}
+
+/// Surfaces of which a transfer texture holds the diffuse light alone: without shine, and with a mirror of the light probe.
+const DIFFUSE_TEXELS: [Shader; 2] = surfaces!("lit by a transfer texture", "gloss_frame.wgsl", "transfer.wgsl");
+
+/// Gloss in transfer textures, a product and a way.
+macro_rules! texels {
+    ($name:literal, $($way:literal),+) => {
+        shader!(
+            concat!("glossy texels, ", $name),
+            "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl", "gloss_frame.wgsl", "transfer.wgsl",
+            "gloss.wgsl", "gloss_texels.wgsl", $($way),+
+        )
+    };
+}
+
+/// Gloss at vertices, a product and a way.
+macro_rules! vertices {
+    ($name:literal, $($way:literal),+) => {
+        shader!(
+            concat!("glossy vertices, ", $name),
+            "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl", "vertex_light.wgsl", "gloss_frame.wgsl",
+            "gloss.wgsl", "gloss_vertices.wgsl", $($way),+
+        )
+    };
+}
+
+const TEXELS_CACHE: Shader = texels!("kept", "gloss_texels_cache.wgsl");
+const TEXELS_TP: Shader = texels!("triple products", "gloss_texels_product.wgsl", "gloss_tp.wgsl");
+const TEXELS_TPFL: Shader = texels!("matrix of the light", "gloss_texels_product.wgsl", "gloss_tpfl.wgsl");
+const VERTICES_CACHE: Shader = vertices!("kept", "gloss_vertices_cache.wgsl");
+const VERTICES_TP: Shader = vertices!("triple products", "gloss_vertices_product.wgsl", "gloss_tp.wgsl");
+const VERTICES_TPFL: Shader = vertices!("matrix of the light", "gloss_vertices_product.wgsl", "gloss_tpfl.wgsl");
 
 /// Every module of the renderer, for the tests that need no GPU.
 #[cfg(test)]
 pub(crate) fn all() -> Vec<Shader> {
-    let others = [RELIGHT, SHEET_FILL, SKY, RESOLVE, BLOOM, DISPLAY];
-    others.into_iter().chain(SURFACES.into_iter().flatten()).collect()
+    let others = [RELIGHT, SHEET_FILL, GLOSS_ROWS, SKY, RESOLVE, BLOOM, DISPLAY];
+    let ways = GlossWay::ALL.into_iter().flat_map(|way| [GlossKind::Texels(way), GlossKind::Vertices(way)]);
+    let kinds: Vec<GlossKind> = ways.collect();
+    let glossy = (1..=8)
+        .filter_map(Bands::new)
+        .flat_map(|bands| kinds.iter().map(move |kind| glossy(*kind, true, Some(bands))).collect::<Vec<_>>());
+    others.into_iter().chain(SURFACES.into_iter().flatten()).chain(DIFFUSE_TEXELS).chain(glossy).collect()
 }
 
 impl Shader {
     /// Compiles the module.
-    pub(crate) fn module(self, device: &wgpu::Device) -> wgpu::ShaderModule {
+    pub(crate) fn module(&self, device: &wgpu::Device) -> wgpu::ShaderModule {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(self.name),
-            source: wgpu::ShaderSource::Wgsl(self.text.into()),
+            source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(&self.text)),
         })
     }
 }
@@ -93,7 +151,9 @@ mod tests {
     fn validate(text: &str) -> Result<(), String> {
         let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
         let flags = naga::valid::ValidationFlags::all();
-        naga::valid::Validator::new(flags, naga::valid::Capabilities::default())
+        // Halves in pairs, which every Vulkan, Metal and DirectX device packs.
+        let capabilities = naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+        naga::valid::Validator::new(flags, capabilities)
             .validate(&module)
             .map(drop)
             .map_err(|error| error.emit_to_string(text))
@@ -102,7 +162,7 @@ mod tests {
     #[test]
     fn every_module_is_valid() {
         for shader in all() {
-            assert_eq!(validate(shader.text), Ok(()), "{} must be valid WGSL", shader.name);
+            assert_eq!(validate(&shader.text), Ok(()), "{} must be valid WGSL", shader.name);
         }
     }
 

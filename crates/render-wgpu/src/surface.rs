@@ -1,9 +1,10 @@
 //! The surfaces of a scene: pipelines for what the file holds, and what to draw with them.
 
 use crate::geometry::{Attribute, Geometry};
+use crate::gloss::{Gloss, GlossKind};
 use crate::material::{self, BoundMaterial, Variant};
 use crate::sheets::Sheets;
-use crate::{Error, Gpu, blend::Blended, gpu_data, shaders};
+use crate::{Error, Frame, Gpu, blend::Blended, gpu_data, shaders};
 use coeff_io::Prt;
 use glam::Quat;
 use sh_math::{Rgb, hemisphere::Basis};
@@ -17,7 +18,18 @@ pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(crate) struct Draw {
     pub(crate) material: u32,
     pub(crate) sheet: Option<u32>,
+    /// The transfer texture above it.
+    pub(crate) texels: Option<u32>,
+    /// Whether its vertices hold gloss.
+    pub(crate) rows: bool,
     pub(crate) triangles: Range<u32>,
+}
+
+impl Draw {
+    /// What decides on pipeline and bindings.
+    pub(crate) fn kind(&self) -> Self {
+        Self { triangles: 0..0, ..self.clone() }
+    }
 }
 
 /// All surfaces, ready to be drawn.
@@ -27,16 +39,29 @@ pub(crate) struct Surfaces {
     materials: Vec<BoundMaterial>,
     layouts: Layouts,
     format: wgpu::TextureFormat,
-    /// Materials in use, with the light map above them.
-    kinds: Vec<(u32, Option<u32>)>,
+    /// What there is to draw, each kind once.
+    kinds: Vec<Draw>,
     pipelines: HashMap<Variant, wgpu::RenderPipeline>,
+    /// Those that draw depth before.
+    depth_pipelines: HashMap<Variant, wgpu::RenderPipeline>,
     reflection: Option<wgpu::BindGroup>,
     /// Only where a mesh shows one.
     sheets: Option<Sheets>,
+    /// Only where the file holds any.
+    gloss: Option<Gloss>,
+    /// Whether depth is drawn before surfaces.
+    early: bool,
     /// The basis that is asked for light maps.
     basis: Option<Basis>,
     opaque: Vec<Draw>,
     blended: Option<Blended>,
+}
+
+/// What a pipeline draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pass {
+    Color,
+    Depth,
 }
 
 /// The layouts of the groups that surfaces read.
@@ -58,38 +83,97 @@ impl Surfaces {
         lit: wgpu::Buffer,
         format: wgpu::TextureFormat,
     ) -> Result<Self, Error> {
-        let geometry = Geometry::new(gpu, prt, lit, reflection.is_some())?;
         let materials = material::upload(gpu, prt, &layouts.material)?;
         let draws = draws(prt);
-        let mut kinds = draws.iter().map(|draw| (draw.material, draw.sheet)).collect::<Vec<_>>();
-        kinds.sort_unstable();
-        kinds.dedup();
+        let mut kinds: Vec<Draw> = Vec::new();
+        for kind in draws.iter().map(Draw::kind) {
+            if !kinds.contains(&kind) {
+                kinds.push(kind);
+            }
+        }
         let is_blended = |draw: &Draw| materials[draw.material as usize].is_blended();
         let (behind, opaque) = draws.into_iter().partition::<Vec<_>, _>(is_blended);
         let blended = Blended::new(gpu, prt, &behind)?;
         let sheets = Sheets::new(gpu, prt)?;
+        let gloss = Gloss::new(gpu, prt)?;
+        let rows = gloss.as_ref().and_then(|gloss| gloss.vertices.as_ref()).map(|vertices| vertices.row_of.clone());
+        let geometry = Geometry::new(gpu, prt, lit, reflection.is_some(), rows)?;
         let basis = sheets.as_ref().map(|sheets| sheets.maps().basis);
-        let pipelines = HashMap::new();
-        let mut surfaces =
-            Self { geometry, materials, layouts, format, kinds, pipelines, reflection, sheets, basis, opaque, blended };
-        surfaces.build_pipelines(gpu);
+        let (pipelines, depth_pipelines) = (HashMap::new(), HashMap::new());
+        let mut surfaces = Self {
+            geometry,
+            materials,
+            layouts,
+            format,
+            kinds,
+            pipelines,
+            depth_pipelines,
+            reflection,
+            sheets,
+            gloss,
+            early: false,
+            basis,
+            opaque,
+            blended,
+        };
+        // Which way gloss takes is known with the first frame.
+        if surfaces.gloss.is_none() {
+            surfaces.build_pipelines(gpu);
+        }
         Ok(surfaces)
     }
 
     /// Builds the pipelines that are not there yet.
     fn build_pipelines(&mut self, gpu: &Gpu) {
-        for &(material, sheet) in &self.kinds {
-            let variant = self.variant(material, sheet);
+        for kind in self.kinds.clone() {
+            let variant = self.variant(&kind);
             if !self.pipelines.contains_key(&variant) {
-                self.pipelines.insert(variant, self.pipeline(gpu, variant));
+                self.pipelines.insert(variant, self.pipeline(gpu, variant, Pass::Color));
+            }
+            if variant.early && !self.depth_pipelines.contains_key(&variant) {
+                self.depth_pipelines.insert(variant, self.pipeline(gpu, variant, Pass::Depth));
             }
         }
     }
 
-    fn variant(&self, material: u32, sheet: Option<u32>) -> Variant {
-        let maps = self.sheets.as_ref().zip(sheet);
+    fn variant(&self, draw: &Draw) -> Variant {
+        let maps = self.sheets.as_ref().zip(draw.sheet);
         let basis = maps.zip(self.basis).map(|((sheets, sheet), asked)| sheets.basis(sheet, asked));
-        self.materials[material as usize].variant(basis)
+        let plain = self.materials[draw.material as usize].variant(basis);
+        let gloss = self.gloss.as_ref().and_then(|gloss| gloss.kind(draw, plain.shiny));
+        let bounced = self.gloss.as_ref().is_some_and(Gloss::is_bounced);
+        Variant { gloss, bounced, early: self.early && !plain.blended, ..plain }
+    }
+
+    /// Gloss and transfer textures, if there are any.
+    pub(crate) fn gloss(&self) -> Option<&Gloss> {
+        self.gloss.as_ref()
+    }
+
+    /// Brings gloss and transfer textures, if there are any, to a frame; builds the pipelines for it.
+    pub(crate) fn put_on_gloss(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        light: &Rgb,
+        frame: &Frame,
+    ) -> Result<(), Error> {
+        if let Some(gloss) = &mut self.gloss {
+            gloss.record(gpu, encoder, light, frame)?;
+            self.early = frame.early_depth && gloss.sheets.iter().any(|sheet| sheet.shines);
+            self.build_pipelines(gpu);
+        }
+        Ok(())
+    }
+
+    /// Whether depth is drawn before surfaces.
+    pub(crate) fn is_early(&self) -> bool {
+        self.early
+    }
+
+    /// Draws the depth of opaque and masked surfaces.
+    pub(crate) fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.draw(pass, &self.geometry.triangles, &self.opaque, &self.depth_pipelines);
     }
 
     /// The light maps without their layers, if there are any.
@@ -100,6 +184,7 @@ impl Surfaces {
     /// Forgets the light of the light maps.
     pub(crate) fn unlight(&mut self) {
         self.sheets.iter_mut().for_each(Sheets::unlight);
+        self.gloss.iter_mut().for_each(Gloss::unlight);
     }
 
     /// Records the light maps in `basis`, if there are any, under `light` turned by `rotation`; builds the pipelines for them.
@@ -126,41 +211,59 @@ impl Surfaces {
 
     /// Draws opaque and masked surfaces in file order: of equal depths the first stays.
     pub(crate) fn draw_opaque(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.draw(pass, &self.geometry.triangles, &self.opaque);
+        self.draw(pass, &self.geometry.triangles, &self.opaque, &self.pipelines);
     }
 
     /// Draws blended surfaces, farthest first.
     pub(crate) fn draw_blended(&self, gpu: &Gpu, pass: &mut wgpu::RenderPass<'_>, view: &gpu_data::View) {
         if let Some(blended) = &self.blended {
-            self.draw(pass, &blended.indices, &blended.sort(gpu, view));
+            self.draw(pass, &blended.indices, &blended.sort(gpu, view), &self.pipelines);
         }
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, indices: &wgpu::Buffer, draws: &[Draw]) {
+    fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        indices: &wgpu::Buffer,
+        draws: &[Draw],
+        pipelines: &HashMap<Variant, wgpu::RenderPipeline>,
+    ) {
         pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         let mut last = None;
         for draw in draws {
             let material = &self.materials[draw.material as usize];
-            let variant = self.variant(draw.material, draw.sheet);
+            let variant = self.variant(draw);
             if last != Some(variant) {
-                self.set_variant(pass, variant);
+                self.set_variant(pass, variant, pipelines);
                 last = Some(variant);
             }
             pass.set_bind_group(1, &material.bindings, &[]);
             if let (Some(sheets), Some(sheet)) = (&self.sheets, draw.sheet) {
                 pass.set_bind_group(3, sheets.bindings(sheet), &[]);
             }
+            if let (Some(gloss), Some(kind)) = (&self.gloss, variant.gloss) {
+                pass.set_bind_group(3, gloss.bindings(kind, draw), &[]);
+            }
             pass.draw_indexed(3 * draw.triangles.start..3 * draw.triangles.end, 0, 0..1);
         }
     }
 
-    fn pipeline(&self, gpu: &Gpu, variant: Variant) -> wgpu::RenderPipeline {
-        let shader = shaders::surface(variant.shiny, variant.basis);
-        let (vertex_entry, fragment_entry) =
-            if variant.shiny { ("place_shiny", "draw_shiny") } else { ("place_diffuse", "draw_diffuse") };
+    fn pipeline(&self, gpu: &Gpu, variant: Variant, pass: Pass) -> wgpu::RenderPipeline {
+        let shader = match variant.gloss {
+            Some(kind) => shaders::glossy(kind, variant.shiny, self.gloss.as_ref().and_then(Gloss::bands)),
+            None => shaders::surface(variant.shiny, variant.basis),
+        };
+        let entries = match (variant.gloss, variant.shiny) {
+            (Some(GlossKind::Vertices(_)), _) => ["place_glossy", "draw_glossy", "cut_glossy"],
+            (_, true) => ["place_shiny", "draw_shiny", "cut_shiny"],
+            (_, false) => ["place_diffuse", "draw_diffuse", "cut_diffuse"],
+        };
+        let [vertex_entry, draw_entry, cut_entry] = entries;
         let module = shader.module(&gpu.device);
         let reflection = self.layouts.reflection.as_ref().filter(|_| variant.shiny);
         let sheet = self.sheets.as_ref().filter(|_| variant.basis.is_some()).map(Sheets::layout);
+        let own = self.gloss.as_ref().zip(variant.gloss).map(|(gloss, kind)| gloss.layout(kind));
+        let sheet = own.or(sheet);
         let groups = [Some(&self.layouts.view), Some(&self.layouts.material), reflection, sheet];
         let used = if sheet.is_some() { 4 } else { 2 + usize::from(variant.shiny) };
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -171,35 +274,57 @@ impl Surfaces {
         let inputs = attributes(variant).map(|attribute| Input::new(&self.geometry, attribute)).collect::<Vec<_>>();
         let buffers = inputs.iter().map(|input| Some(input.layout())).collect::<Vec<_>>();
         let constants = variant.constants();
+        let color = [Some(wgpu::ColorTargetState {
+            format: self.format,
+            blend: variant.blended.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+            write_mask: wgpu::ColorWrites::ALL,
+        })];
+        let (entry, targets): (_, &[_]) = match pass {
+            Pass::Color => (Some(draw_entry), &color),
+            // Only a mask has to look at the surface.
+            Pass::Depth => (variant.masked.then_some(cut_entry), &[]),
+        };
+        // Gloss at vertices reads the roughness there.
+        let vertex_constants: Vec<(&str, f64)> = match variant.gloss {
+            Some(GlossKind::Vertices(_)) => constants.clone(),
+            _ => Vec::new(),
+        };
         gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(shader.name),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some(vertex_entry),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &vertex_constants,
+                    ..Default::default()
+                },
                 buffers: &buffers,
             },
             primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
-            depth_stencil: Some(depth_state(!variant.blended, wgpu::CompareFunction::Greater)),
+            depth_stencil: Some(match (pass, variant.early) {
+                (Pass::Color, true) => depth_state(false, wgpu::CompareFunction::Equal),
+                _ => depth_state(!variant.blended, wgpu::CompareFunction::Greater),
+            }),
             multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
+            fragment: entry.map(|entry| wgpu::FragmentState {
                 module: &module,
-                entry_point: Some(fragment_entry),
+                entry_point: Some(entry),
                 compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: self.format,
-                    blend: variant.blended.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
+                targets,
             }),
             multiview_mask: None,
             cache: None,
         })
     }
 
-    fn set_variant(&self, pass: &mut wgpu::RenderPass<'_>, variant: Variant) {
-        pass.set_pipeline(&self.pipelines[&variant]);
+    fn set_variant(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        variant: Variant,
+        pipelines: &HashMap<Variant, wgpu::RenderPipeline>,
+    ) {
+        pass.set_pipeline(&pipelines[&variant]);
         for (slot, attribute) in (0..).zip(attributes(variant)) {
             pass.set_vertex_buffer(slot, self.geometry.stream(attribute).buffer.slice(..));
         }
@@ -224,12 +349,18 @@ fn draws(prt: &Prt) -> Vec<Draw> {
     let mut draws: Vec<Draw> = Vec::new();
     for (index, mesh) in prt.meshes.iter().enumerate().filter(|(_, mesh)| mesh.triangles > 0) {
         let sheet = prt.maps.as_ref().and_then(|maps| maps.sheet_of_mesh[index]);
+        let texels = prt.transfer_textures.as_ref().and_then(|textures| textures.sheet_of_mesh[index]);
+        let vertices = prt.gloss.as_ref().and_then(|gloss| gloss.vertices.as_ref());
+        let rows = vertices.is_some_and(|vertices| vertices.first_row[index].is_some());
         let (material, triangles) = (mesh.material, mesh.first_triangle..mesh.first_triangle + mesh.triangles);
         match draws.last_mut() {
-            Some(draw) if (draw.material, draw.sheet) == (material, sheet) && draw.triangles.end == triangles.start => {
+            Some(draw)
+                if (draw.material, draw.sheet, draw.texels, draw.rows) == (material, sheet, texels, rows)
+                    && draw.triangles.end == triangles.start =>
+            {
                 draw.triangles.end = triangles.end;
             }
-            _ => draws.push(Draw { material, sheet, triangles }),
+            _ => draws.push(Draw { material, sheet, texels, rows, triangles }),
         }
     }
     draws
@@ -237,7 +368,8 @@ fn draws(prt: &Prt) -> Vec<Draw> {
 
 fn attributes(variant: Variant) -> impl Iterator<Item = Attribute> {
     let more: &[Attribute] = if variant.shiny { &Attribute::SHINY } else { &[] };
-    Attribute::DIFFUSE.into_iter().chain(more.iter().copied())
+    let rows = matches!(variant.gloss, Some(GlossKind::Vertices(_))).then_some(Attribute::Row);
+    Attribute::DIFFUSE.into_iter().chain(more.iter().copied()).chain(rows)
 }
 
 /// A depth test against the reversed buffer.

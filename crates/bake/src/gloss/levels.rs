@@ -13,7 +13,9 @@ pub(crate) fn below(finest: &Plate, dilation: u32) -> Vec<Plate> {
     // Of each texel of the finest level that a surface touches its chart.
     loop {
         let above = levels.last().unwrap_or(finest);
-        if above.width.max(above.height) <= SMALLEST {
+        // Renderers' own levels are exact halves.
+        let odd = !above.width.is_multiple_of(2) || !above.height.is_multiple_of(2);
+        if odd || above.width.max(above.height) <= SMALLEST {
             return levels;
         }
         let mut next = halved(above);

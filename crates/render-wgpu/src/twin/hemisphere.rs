@@ -26,7 +26,7 @@ fn exact(basis: Basis, first: usize, [x, y, z, _]: [f32; 4]) -> [f64; 4] {
 
 /// The WGSL of the module that draws `basis`, from its `hemisphere` on.
 fn library(basis: Basis) -> String {
-    let text = shaders::surface(false, Some(basis)).text;
+    let text = shaders::surface(false, Some(basis)).text.into_owned();
     // The file of the basis stands last.
     let start = text.rfind("fn hemisphere(").expect("the module holds a basis");
     format!("{}{}", super::FUNCTIONS, &text[start..])

@@ -5,6 +5,8 @@ use crate::Scene;
 
 /// Fewest texels along a side of a sheet.
 const SMALLEST: u32 = 16;
+/// Sides are whole multiples of it: levels of detail halve them without a rest.
+const STEP: u32 = 16;
 
 /// The sheet of one object.
 #[derive(Debug, Clone)]
@@ -51,10 +53,21 @@ pub fn objects(
             faults(scene, &[mesh]).iter().all(|fault| fault.kind == FaultKind::Flat)
         };
         let atlas = if serves { None } else { Some(alone(scene, mesh, side, options, progress)?) };
-        let [width, height] = atlas.as_ref().map_or([side; 2], |atlas| [atlas.width, atlas.height]);
+        let [width, height] = match &atlas {
+            Some(atlas) => padded(scene, mesh, [atlas.width, atlas.height]),
+            None => [side.next_multiple_of(STEP); 2],
+        };
         sheets.push(ObjectSheet { mesh, width, height, atlas });
     }
     Ok(sheets)
+}
+
+/// Makes room at the far sides of a sheet; texels stay where they are.
+fn padded(scene: &mut Scene, mesh: usize, sides: [u32; 2]) -> [u32; 2] {
+    let wider = sides.map(|side| side.next_multiple_of(STEP));
+    let scale = glam::Vec2::new(sides[0] as f32 / wider[0] as f32, sides[1] as f32 / wider[1] as f32);
+    scene.meshes[mesh].uv1.iter_mut().for_each(|uv| *uv *= scale);
+    wider
 }
 
 /// Unwraps one mesh into a sheet of so many texels along a side, or of twice as many until its charts fit.
