@@ -336,7 +336,7 @@ pub(crate) fn array_view(texture: &wgpu::Texture, first: u32, count: u32) -> wgp
 }
 
 /// What the rules and products of `coeff_io` need of a file, without its large arrays.
-fn shell(prt: &Prt) -> Prt {
+pub(crate) fn shell(prt: &Prt) -> Prt {
     let mut shell = Prt {
         generator: String::new(),
         convention: prt.convention.clone(),

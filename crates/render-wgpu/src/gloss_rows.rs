@@ -79,10 +79,10 @@ pub(crate) enum Part {
 pub(crate) enum Target<'a> {
     /// A level of a texture, at the texels of the rows.
     Texels(&'a wgpu::TextureView),
-    /// Four halves per function, from a row on.
-    Halves(&'a wgpu::Buffer, u32),
-    /// Three floats per row, from a row on.
-    Radiance(&'a wgpu::Buffer, u32),
+    /// Four halves per function.
+    Halves(&'a wgpu::Buffer),
+    /// Three floats per row.
+    Radiance(&'a wgpu::Buffer),
 }
 
 /// A run of receivers, few enough for one storage binding.
@@ -99,19 +99,9 @@ pub(crate) struct RowSet {
 /// A pass over the rows.
 #[derive(Debug)]
 struct Step {
-    kind: Kind,
     dispatch: Dispatch,
     /// Rows of radiance that the CPU writes: which table of bounces.
     radiance: Option<(usize, wgpu::Buffer)>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Clear,
-    Multiply,
-    Combine,
-    Add,
-    Diffuse,
 }
 
 #[derive(Debug)]
@@ -160,7 +150,7 @@ impl RowSet {
         if !starts {
             let numbers = set.numbers(gpu, 0, 0)?;
             let bindings = bind(gpu, &kernels.clear, &[(0, numbers.as_entire_binding()), (1, set.lit_binding())]);
-            set.push(Kind::Clear, &kernels.clear, bindings, None);
+            set.push(&kernels.clear, bindings, None);
         }
         for one in taken {
             set.take(gpu, kernels, factors, one)?;
@@ -175,13 +165,12 @@ impl RowSet {
 
     fn push(
         &mut self,
-        kind: Kind,
         pipeline: &wgpu::ComputePipeline,
         bindings: wgpu::BindGroup,
         radiance: Option<(usize, wgpu::Buffer)>,
     ) {
         let dispatch = Dispatch { pipeline: pipeline.clone(), bindings };
-        self.steps.push(Step { kind, dispatch, radiance });
+        self.steps.push(Step { dispatch, radiance });
     }
 
     fn lit_binding(&self) -> wgpu::BindingResource<'_> {
@@ -189,11 +178,7 @@ impl RowSet {
     }
 
     fn numbers(&self, gpu: &Gpu, rank: u32, width: u32) -> Result<wgpu::Buffer, Error> {
-        self.numbers_from(gpu, rank, width, self.first)
-    }
-
-    fn numbers_from(&self, gpu: &Gpu, rank: u32, width: u32, first: u32) -> Result<wgpu::Buffer, Error> {
-        let numbers = gpu_data::Rows { count: self.count, functions: self.functions, rank, width, first };
+        let numbers = gpu_data::Rows { count: self.count, functions: self.functions, rank, width, first: self.first };
         geometry::buffer(gpu, "rows", bytemuck::bytes_of(&numbers), wgpu::BufferUsages::UNIFORM)
     }
 
@@ -222,7 +207,7 @@ impl RowSet {
                     (4, clusters.as_entire_binding()),
                 ],
             );
-            self.push(Kind::Combine, &kernels.combine, bindings, None);
+            self.push(&kernels.combine, bindings, None);
             return Ok(());
         }
         match taken.part {
@@ -238,7 +223,7 @@ impl RowSet {
                 let entries =
                     [(0, numbers.as_entire_binding()), (1, self.lit_binding()), (3, radiance.as_entire_binding())];
                 let bindings = bind(gpu, &kernels.add, &entries);
-                self.push(Kind::Add, &kernels.add, bindings, Some((taken.number, radiance)));
+                self.push(&kernels.add, bindings, Some((taken.number, radiance)));
             }
             Part::Visibility => {
                 let values = self.values(gpu, taken)?;
@@ -253,7 +238,7 @@ impl RowSet {
                         (3, factors.matrix.as_entire_binding()),
                     ],
                 );
-                self.push(Kind::Multiply, &kernels.multiply, bindings, None);
+                self.push(&kernels.multiply, bindings, None);
             }
             Part::Diffuse { coefficients, channels } => {
                 let values = self.values(gpu, taken)?;
@@ -268,7 +253,7 @@ impl RowSet {
                         (3, factors.light.as_entire_binding()),
                     ],
                 );
-                self.push(Kind::Diffuse, &kernels.diffuse, bindings, None);
+                self.push(&kernels.diffuse, bindings, None);
             }
         }
         Ok(())
@@ -306,12 +291,12 @@ impl RowSet {
                 ];
                 (&kernels.store_texels, bind(gpu, &kernels.store_texels, &entries))
             }
-            Target::Halves(buffer, first) | Target::Radiance(buffer, first) => {
+            Target::Halves(buffer) | Target::Radiance(buffer) => {
                 let (pipeline, binding) = match target {
                     Target::Halves(..) => (&kernels.store_halves, 6),
                     _ => (&kernels.store_radiance, 7),
                 };
-                let numbers = self.numbers_from(gpu, 0, 0, self.first + first)?;
+                let numbers = self.numbers(gpu, 0, 0)?;
                 let entries =
                     [(0, numbers.as_entire_binding()), (1, self.lit_binding()), (binding, buffer.as_entire_binding())];
                 (pipeline, bind(gpu, pipeline, &entries))
@@ -342,12 +327,6 @@ impl RowSet {
             pass.set_bind_group(0, &dispatch.bindings, &[]);
             pass.dispatch_workgroups(self.count.div_ceil(WORKGROUP).max(1), self.functions, 1);
         }
-    }
-
-    /// Number of passes over the rows, for tests.
-    #[cfg(test)]
-    pub(crate) fn kinds(&self) -> usize {
-        self.steps.iter().filter(|step| step.kind != Kind::Clear).count()
     }
 }
 

@@ -141,7 +141,7 @@ impl Kept {
         for first in (0..count).step_by(most as usize) {
             let run = [first, most.min(count - first)];
             let mut set = RowSet::new(gpu, &shared.kernels, &shared.factors, functions, run, &parts)?;
-            set.send_to(gpu, &shared.kernels, &Target::Halves(&rows, 0), (&[], 0))?;
+            set.send_to(gpu, &shared.kernels, &Target::Halves(&rows), (&[], 0))?;
             sets.push(set);
         }
         Ok(Self { rows, sets, is_lit: false })

@@ -25,6 +25,7 @@ mod picture;
 mod readback;
 mod reflection;
 mod relight;
+mod relight_clusters;
 mod renderer;
 mod shaders;
 mod sheets;

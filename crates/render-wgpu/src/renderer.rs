@@ -4,6 +4,7 @@ use crate::finish::Finish;
 use crate::gloss::Gloss;
 use crate::readback::Readback;
 use crate::relight::Relight;
+use crate::relight_clusters::ClusteredRelight;
 use crate::surface::{Layouts, Surfaces};
 use crate::targets::{Size, Targets};
 use crate::{Error, Frame, Gpu, Image, check, gpu_data, material, picture, reflection, sky::Sky, surface, view};
@@ -23,7 +24,7 @@ pub struct Renderer {
     bands: Bands,
     /// The rotation that the vertices are lit for.
     lit_for: Option<Quat>,
-    relight: Relight,
+    relight: Relighting,
     near: f32,
     view: wgpu::Buffer,
     view_bindings: wgpu::BindGroup,
@@ -32,6 +33,29 @@ pub struct Renderer {
     finish: Finish,
     targets: Option<Targets>,
     format: wgpu::TextureFormat,
+}
+
+/// How the vertices are lit.
+#[derive(Debug)]
+enum Relighting {
+    Exact(Relight),
+    Clusters(ClusteredRelight),
+}
+
+impl Relighting {
+    fn lit(&self) -> &wgpu::Buffer {
+        match self {
+            Self::Exact(relight) => relight.lit(),
+            Self::Clusters(relight) => relight.lit(),
+        }
+    }
+
+    fn record(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, light: &Rgb) {
+        match self {
+            Self::Exact(relight) => relight.record(gpu, encoder, light),
+            Self::Clusters(relight) => relight.record(gpu, encoder, light),
+        }
+    }
 }
 
 /// How long a frame took.
@@ -62,7 +86,13 @@ impl Renderer {
         })?;
         let device = &gpu.device;
         let format = gpu.samples(surface::blends(prt));
-        let relight = Relight::new(gpu, &prt.transfer, gpu.limits.max_storage_buffer_binding_size)?;
+        let relight = match &prt.compressed {
+            Some(table) => Relighting::Clusters(ClusteredRelight::new(gpu, prt, table)?),
+            None => {
+                let limit = gpu.limits.max_storage_buffer_binding_size;
+                Relighting::Exact(Relight::new(gpu, &prt.transfer, limit)?)
+            }
+        };
         let layouts = Layouts {
             view: view_layout(device),
             material: material::layout(device),

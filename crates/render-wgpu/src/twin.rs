@@ -1,5 +1,6 @@
 //! Each WGSL function against its Rust twin, on a GPU: tests only.
 
+mod gloss;
 mod hemisphere;
 mod sheets;
 
