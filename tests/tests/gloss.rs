@@ -1,0 +1,82 @@
+//! Baked gloss against paths with the same lobes, picture by picture. The example `figures` draws and prints the same for larger scenes.
+
+mod glossy;
+
+use coeff_io::{GlossView, Refine};
+use glam::{Vec3, Vec4};
+use glossy::{Recipe, Shot, baked, difference, drawn, traced};
+use probe_io::Environment;
+use scene::{Material, Scene};
+use sh_math::lobe::{Lobe, roughness_of_exponent};
+
+/// Paths of each pixel; their noise is a part of the differences below.
+const PATHS: u32 = 256;
+const SIZE: [u32; 2] = [96, 72];
+
+/// The Cornell box with one block of coloured metal.
+fn scene(roughness: f32) -> Scene {
+    let mut scene = scene::builtin("cornell-box").expect("a built-in scene");
+    let block = (0..scene.meshes.len())
+        .rev()
+        .find(|&m| scene.meshes[m].name.contains("block"))
+        .unwrap_or(scene.meshes.len() - 1);
+    scene.meshes[block].material = scene.materials.len() as u32;
+    scene.meshes[block].colors.clear();
+    scene.materials.push(Material {
+        name: "metal".into(),
+        metallic: 1.0,
+        roughness,
+        base_color: Vec4::new(0.9, 0.7, 0.4, 1.0),
+        ..Material::default()
+    });
+    scene
+}
+
+/// A broad light, so that few paths are enough.
+fn light() -> Environment {
+    Environment::from_function("test", 64, |d| {
+        let up = 0.6 + 0.4 * d.y;
+        [up + 0.5 * (d.x - 0.3).max(0.0), up, up + 0.6 * (-d.x).max(0.0)]
+    })
+}
+
+fn view(lobe: Lobe, roughness: f32) -> Shot {
+    Shot { camera: 0, size: SIZE, view: GlossView { lobe, roughness: Some(roughness), ..GlossView::default() } }
+}
+
+fn fine() -> Recipe {
+    Recipe { rays: 1024, bent: false, refine: Refine::Edge(0.15), ..Recipe::standard() }
+}
+
+/// At vertices and at texels, both lobes; against the same without gloss by direction.
+#[test]
+fn gloss_agrees_with_paths() {
+    let light = light();
+    for (lobe, roughness) in [(Lobe::Phong, roughness_of_exponent(8.0) as f32), (Lobe::Ggx, 0.6)] {
+        let scene = scene(roughness);
+        let shot = view(lobe, roughness);
+        let truth = traced(&scene, &light, &shot, (PATHS, 2, false));
+        let off = |recipe: &Recipe| difference(&drawn(&baked(&scene, recipe, None), &light, &shot), &truth);
+        let vertices = off(&fine());
+        let texels = off(&Recipe { texels: Some(256), ..fine() });
+        let openness = off(&Recipe { glossy: false, ..fine() });
+        assert!(vertices < 0.06 && texels < 0.06, "{lobe:?}: {vertices} at vertices, {texels} at texels");
+        assert!(openness > 1.3 * vertices, "{lobe:?}: {openness} without gloss by direction must show ({vertices})");
+    }
+}
+
+/// Light that metal mirrors reaches diffuse surfaces: without bounces it is missing.
+#[test]
+fn mirrors_light_their_surroundings() {
+    let light = light();
+    let scene = scene(0.5);
+    let shot = view(Lobe::Ggx, 0.5);
+    let truth = traced(&scene, &light, &shot, (PATHS, 2, false));
+    let drawn = |scene: &Scene| drawn(&baked(scene, &fine(), None), &light, &shot);
+    let mean = |picture: &[[f32; 3]]| picture.as_flattened().iter().sum::<f32>();
+    let share = mean(&drawn(&scene)) / mean(&truth);
+    assert!((share - 1.0).abs() < 0.02, "{share}");
+    let mut dark = scene.clone();
+    dark.materials.last_mut().unwrap().base_color = Vec3::ZERO.extend(1.0);
+    assert!((mean(&drawn(&dark)) / mean(&truth) - 1.0).abs() > 0.05, "can fail: a black block");
+}
