@@ -227,7 +227,8 @@ fn summary(report: &Report) -> Vec<String> {
         )
     };
     let bases = report.bases.iter().map(|bases| format!("light maps, {}: {}", bases.recommendation(), bases.options()));
-    report.advice.iter().map(line).chain(bases).collect()
+    let gloss = report.gloss.iter().map(|gloss| format!("gloss: {}", gloss.options));
+    report.advice.iter().map(line).chain(bases).chain(gloss).collect()
 }
 
 /// The error of a run that its goal is about, as the page has it: for a size what fewer bands leave out is in it.

@@ -147,6 +147,33 @@ impl<'a> Bakes<'a> {
         }
     }
 
+    /// Bakes a scene as it is with more beside the vertices; `None` where it took more than `most` seconds.
+    pub(super) fn bake_with(
+        &mut self,
+        name: &str,
+        scene: &Scene,
+        settings: &Settings,
+        extras: &bake::Extras,
+        most: f64,
+    ) -> Result<Option<Timed>, Error> {
+        self.count += 1;
+        self.tell(name, 0, 1)?;
+        let (progress, run, began) = (self.progress, self.count, Instant::now());
+        let is_late = || began.elapsed().as_secs_f64() > most;
+        let found = bake::bake_with(scene, &as_split(settings), extras, &|now| {
+            if is_late() {
+                return ControlFlow::Break(());
+            }
+            progress(&Step { name, run, stage: now.stage.to_string(), done: now.done, total: now.total })
+        });
+        match found {
+            Ok(prt) => Ok(Some(Timed { prt, seconds: began.elapsed().as_secs_f64() })),
+            // The user's own wish to stop is asked for anew.
+            Err(bake::Error::Cancelled) if is_late() => self.tell(name, 0, 1).map(|()| None),
+            Err(error) => Err(error.into()),
+        }
+    }
+
     /// Tells of work that is no bake.
     pub(super) fn tell(&self, name: &str, done: u64, total: u64) -> Result<(), Error> {
         let step = Step { name, run: self.count, stage: String::new(), done, total };

@@ -8,8 +8,8 @@ const HEAD: &str = "knob,setting,can_be_typed,bands,receivers,channels,bounces,v
     transfer_error_median,transfer_error_p95,transfer_error_worst,radiance_error,radiance_error_all_bands,on_fast_front,\
     on_small_front,longest_edge_metres,milliseconds_per_frame\n";
 
-/// The study as a CSV file: one line per run, per mesh, per basis of light maps in an encoding (its error as drawn stands under radiance)
-/// and per renderer; fields that do not apply are empty.
+/// The study as a CSV file: one line per run, per mesh, per basis of light maps in an encoding (its error as drawn stands under radiance),
+/// per bake of gloss (the difference of its picture stands there), per way of gloss and per renderer; fields that do not apply are empty.
 #[must_use]
 pub fn csv(report: &Report) -> String {
     let mut text = HEAD.to_owned();
@@ -32,6 +32,28 @@ pub fn csv(report: &Report) -> String {
                 stored.drawn.rms
             );
         }
+    }
+    for run in report.gloss.iter().flat_map(|gloss| &gloss.runs) {
+        // The difference of the picture stands under radiance.
+        let _ = writeln!(
+            text,
+            "gloss,{},true,,{},,,,,{},{},,,,{},,,,,",
+            quoted(&run.setting),
+            run.receivers,
+            run.seconds,
+            run.bytes,
+            run.picture
+        );
+    }
+    for time in report.gloss.iter().flat_map(|gloss| &gloss.ways) {
+        let place = if time.at_vertices { "vertices" } else { "texels" };
+        let light = if time.turns { "light turns" } else { "light stays" };
+        let _ = writeln!(
+            text,
+            "way of gloss,\"{place}, {}, {light}\",,,,,,,,,,,,,,,,,,{}",
+            time.way.name(),
+            time.milliseconds
+        );
     }
     for frames in &report.frames {
         // Writing to a string cannot fail.

@@ -1,6 +1,7 @@
 //! The study as one page that needs nothing else: words, plots, pictures and tables in a single file.
 
 mod bases;
+mod gloss;
 mod insight;
 mod tables;
 
@@ -30,6 +31,7 @@ pub fn page(report: &Report) -> Result<String, Error> {
         tables::runs(report),
         tables::resolution(report),
         bases::section(report)?,
+        gloss::section(report),
         tables::frames(report),
         tables::predictions(report),
         tables::worst(report),

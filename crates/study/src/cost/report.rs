@@ -3,6 +3,7 @@
 use super::bakes::Check;
 use super::deviation::Spread;
 use super::frames::Frames;
+use super::gloss::GlossStudy;
 use super::recommend::{Advice, Goal, without_own};
 use super::resolution::Resolution;
 use crate::bases::scene::Comparison;
@@ -169,6 +170,8 @@ pub struct Report {
     pub resolution: Option<Resolution>,
     /// Bases of light maps, where they were asked for and fitted into the budget.
     pub bases: Option<Comparison>,
+    /// Gloss and transfer textures, where the plan calls for them and they fitted into the budget.
+    pub gloss: Option<GlossStudy>,
     /// Time per picture.
     pub frames: Vec<Frames>,
     /// Predicted and measured bakes: half of the reference, then the trials.

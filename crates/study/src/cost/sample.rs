@@ -60,6 +60,7 @@ pub(crate) fn report() -> Report {
         advice: vec![Advice { goal: Goal::Error(0.01), run: 1, met: true }],
         resolution: None,
         bases: None,
+        gloss: None,
         frames: vec![],
         checks: vec![],
         worst: vec![],

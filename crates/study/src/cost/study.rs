@@ -3,12 +3,13 @@
 use super::bakes::{Bakes, Check, Timed};
 use super::deviation::{Deviation, Spread, Truth};
 use super::format::Format;
+use super::gloss::GlossStudy;
 use super::recommend::{Advice, Goal, Ground, advise};
 use super::report::{Knob, Report, Run, View, WorstReceiver};
 use super::resolution::{self, Resolution};
 use super::trials::{Trial, as_asked, trials};
 use super::truth::{Reference, reference};
-use super::{Error, ProgressFn, Request, Targets, frames, front, light_maps, views};
+use super::{Error, ProgressFn, Request, Targets, frames, front, gloss, light_maps, views};
 use crate::bases::scene::Comparison;
 use coeff_io::{Prt, Transfer};
 
@@ -35,9 +36,10 @@ pub fn study(request: &Request<'_>, progress: ProgressFn<'_>) -> Result<Report, 
     let rest = wanted.split_off(FIRST.min(wanted.len()));
     sweep.trials(wanted, &mut bakes)?;
     let bases = light_maps::study(request, &mut bakes, &mut sweep.left_out)?;
+    let gloss = gloss::study(request, &mut bakes, &mut sweep.left_out)?;
     sweep.trials(rest, &mut bakes)?;
     let resolution = resolution::study(request, &reference.truth, &bakes, &mut sweep.left_out)?;
-    sweep.report(reference, resolution, bases, &bakes)
+    sweep.report(reference, resolution, (bases, gloss), &bakes)
 }
 
 /// A run before it is compared, and its coefficients.
@@ -106,7 +108,7 @@ impl Sweep<'_> {
         mut self,
         reference: Reference,
         resolution: Option<Resolution>,
-        bases: Option<Comparison>,
+        (bases, gloss): (Option<Comparison>, Option<GlossStudy>),
         bakes: &Bakes<'_>,
     ) -> Result<Report, Error> {
         bakes.tell("comparing", 0, 1)?;
@@ -143,6 +145,7 @@ impl Sweep<'_> {
             advice,
             resolution,
             bases,
+            gloss,
             frames,
             asked: self.asked,
             shown,
