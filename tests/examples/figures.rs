@@ -56,7 +56,8 @@ impl Draw<'_> {
         let truth = self.truth(&scene, &light, &shot, 1, false);
         let recipe = Recipe { bounces: 1, bent: false, ..Recipe::standard() };
         let coarse = Recipe { refine: Refine::Off, ..recipe };
-        let texels = Recipe { texels: Some(512), ..coarse };
+        // Light between surfaces comes from vertices: these are split all the same.
+        let texels = Recipe { texels: Some(512), ..recipe };
         let mut row = Vec::new();
         for (name, recipe) in [("vertices as they are", coarse), ("vertices, split", recipe), ("texels", texels)] {
             let prt = baked(&scene, &recipe, None);

@@ -10,8 +10,8 @@ use scene::{Material, Scene};
 use sh_math::lobe::{Lobe, roughness_of_exponent};
 
 /// Paths of each pixel; their noise is a part of the differences below.
-const PATHS: u32 = 256;
-const SIZE: [u32; 2] = [96, 72];
+const PATHS: u32 = 96;
+const SIZE: [u32; 2] = [72, 54];
 
 /// The Cornell box with one block of coloured metal.
 fn scene(roughness: f32) -> Scene {
@@ -45,7 +45,7 @@ fn view(lobe: Lobe, roughness: f32) -> Shot {
 }
 
 fn fine() -> Recipe {
-    Recipe { rays: 1024, bent: false, refine: Refine::Edge(0.15), ..Recipe::standard() }
+    Recipe { rays: 256, bent: false, refine: Refine::Edge(0.3), ..Recipe::standard() }
 }
 
 /// At vertices and at texels, both lobes; against the same without gloss by direction.

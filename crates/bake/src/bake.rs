@@ -7,7 +7,6 @@ use crate::directions::DirectionBank;
 use crate::extras::{Done, Extras, FixedLight};
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer};
-use crate::hit::{NearPoint, PackedHit, Source};
 use crate::mirror::Mirrors;
 use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
@@ -15,13 +14,12 @@ use crate::progress::{Progress, Stage};
 use crate::receivers::Receivers;
 use crate::refine::refine_watched;
 use crate::repair::{Finding, Repair, emerge};
-use crate::world::World;
+use crate::wanted::Wanted;
 use crate::{Error, settings};
 use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Quality, RepairCounts, Settings};
 use scene::Scene;
 use sh_math::Bands;
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 /// Called while a bake runs; returning `Break` cancels it.
@@ -388,49 +386,6 @@ impl<'a> Run<'a> {
             self.achieved.worst_receiver = id;
         }
     }
-}
-
-/// Receivers that others want beside those of the file, for the time of the bake.
-#[derive(Default)]
-struct Wanted {
-    /// Share of a receiver's light from where the backs that it sees are worth receivers of their own.
-    worth: f32,
-    /// Triangles whose backs are wanted.
-    backs: BTreeSet<u32>,
-    /// Receivers and their near points.
-    near: Vec<(u32, Vec<NearPoint>)>,
-}
-
-impl Wanted {
-    fn note(&mut self, id: u32, seen: &Gathered) {
-        if !seen.near.is_empty() {
-            self.near.push((id, seen.near.clone()));
-        }
-        if back_share(&seen.hits) <= self.worth {
-            return;
-        }
-        for source in seen.hits.iter().filter(|hit| hit.is_back).map(|hit| hit.source) {
-            if let Source::Triangle(triangle) = source {
-                self.backs.insert(triangle);
-            }
-        }
-    }
-
-    fn add_to(self, receivers: &mut Receivers, world: &World<'_>) {
-        let vertices: BTreeSet<u32> = self.backs.iter().flat_map(|&t| world.corners[t as usize]).collect();
-        for vertex in vertices {
-            receivers.add_back(vertex);
-        }
-        for (id, points) in self.near {
-            receivers.add_near(id, points.iter().map(|point| world.receiver_at(point)));
-        }
-    }
-}
-
-/// Share of a receiver's light that the backs it sees send on at most.
-fn back_share(hits: &[PackedHit]) -> f32 {
-    let backs = hits.iter().filter(|hit| hit.is_back);
-    backs.map(|hit| hit.reflected.into_iter().fold(0.0, f32::max)).sum()
 }
 
 /// Sum of the changes to come, if each is to the last as the last was to the one before.

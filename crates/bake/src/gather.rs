@@ -4,7 +4,7 @@ use crate::directions::{DirectionBank, DirectionSet, Step};
 use crate::domain::Domain;
 use crate::foresight::Choice;
 use crate::hit::{NearPoint, PackedHit, near_points, packed};
-use crate::mirror::{MOST_BANDS, Mirrors};
+use crate::mirror::Mirrors;
 use crate::receivers::Receiver;
 use crate::world::World;
 use coeff_io::Quality;
@@ -317,26 +317,7 @@ impl Gatherer<'_> {
         }
         out.hits.extend(weighed.iter().map(|(hit, reflected)| packed(hit, *reflected, &out.near)));
         if let Some(mirrors) = self.mirrors {
-            self.add_mirrored(mirrors, &found, out);
-        }
-    }
-
-    /// Adds what surfaces that shine mirror towards the receiver.
-    fn add_mirrored(&self, mirrors: &Mirrors, found: &[(Vec3, Hit, f32)], out: &mut Gathered) {
-        let n = self.bands.coefficients();
-        let mut lobe = [0.0; (MOST_BANDS * MOST_BANDS) as usize];
-        let lobe = &mut lobe[..mirrors.bands.coefficients()];
-        let mut row = vec![0.0f32; n];
-        for (direction, hit, weight) in found {
-            let Some(met) = mirrors.meet(self.world, hit, *direction, lobe) else { continue };
-            let glance = mirrors.glance(&met, lobe, &mut row);
-            out.glint.resize(3 * n, 0.0);
-            for (sums, tint) in out.glint.chunks_exact_mut(n).zip((glance.tint * *weight).to_array()) {
-                sums.iter_mut().zip(&row).for_each(|(sum, x)| *sum += tint * x);
-            }
-            if glance.closed > 0.0 {
-                out.late.push(packed(hit, glance.tint * (glance.closed * weight), &out.near));
-            }
+            mirrors.add_mirrored(self.world, &found, out);
         }
     }
 }

@@ -23,6 +23,7 @@ mod extras;
 mod facts;
 mod field;
 mod foresight;
+mod found;
 mod gather;
 mod gloss;
 mod hit;
@@ -44,6 +45,7 @@ mod split;
 mod storage;
 mod survey;
 mod volume;
+mod wanted;
 mod world;
 
 pub use crate::bake::{ProgressFn, bake, bake_with, plan, plan_with};

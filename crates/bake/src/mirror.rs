@@ -7,7 +7,8 @@
 use crate::directions::DirectionBank;
 use crate::domain::{Domain, Judge};
 use crate::error::Error;
-use crate::gather::{Gatherer, Worker};
+use crate::gather::{Gathered, Gatherer, Worker};
+use crate::hit::packed;
 use crate::material::{self, DIELECTRIC};
 use crate::passes::Monitor;
 use crate::progress::Stage;
@@ -164,6 +165,25 @@ impl Mirrors {
         Some(Met { tint: facing * scale + bias, normal, rows: corners.map(|c| self.row_of[c as usize]), shares })
     }
 
+    /// Adds what surfaces that shine mirror towards a receiver that sees them, by direction and share.
+    pub(crate) fn add_mirrored(&self, world: &World<'_>, found: &[(Vec3, Hit, f32)], out: &mut Gathered) {
+        let n = self.light.coefficients();
+        let mut lobe = [0.0; (MOST_BANDS * MOST_BANDS) as usize];
+        let lobe = &mut lobe[..self.bands.coefficients()];
+        let mut row = vec![0.0f32; n];
+        for (direction, hit, weight) in found {
+            let Some(met) = self.meet(world, hit, *direction, lobe) else { continue };
+            let glance = self.glance(&met, lobe, &mut row);
+            out.glint.resize(3 * n, 0.0);
+            for (sums, tint) in out.glint.chunks_exact_mut(n).zip((glance.tint * *weight).to_array()) {
+                sums.iter_mut().zip(&row).for_each(|(sum, x)| *sum += tint * x);
+            }
+            if glance.closed > 0.0 {
+                out.late.push(packed(hit, glance.tint * (glance.closed * weight), &out.near));
+            }
+        }
+    }
+
     /// Writes what a mirror sends of light that falls on it straight, for tint 1 and every coefficient of the light; `lobe` is that of
     /// [`Mirrors::meet`].
     pub(crate) fn glance(&self, met: &Met, lobe: &[f32], out: &mut [f32]) -> Glance {
@@ -176,7 +196,7 @@ impl Mirrors {
         }
         out.fill(0.0);
         let least = LEAST_FACTOR * lobe[0].abs();
-        for (terms, factor) in self.terms.iter().zip(&*lobe).filter(|(_, factor)| factor.abs() > least) {
+        for (terms, factor) in self.terms.iter().zip(lobe).filter(|(_, factor)| factor.abs() > least) {
             for term in terms {
                 out[term.light as usize] += factor * term.value * seen[term.visibility as usize];
             }

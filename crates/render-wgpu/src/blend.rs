@@ -1,6 +1,6 @@
 //! Triangles that are drawn over what lies behind them: sorted for every view, farthest first.
 
-use crate::{Error, Gpu, gpu_data, surface::Draw};
+use crate::{Error, Gpu, draw::Draw, gpu_data};
 use coeff_io::Prt;
 use glam::Vec3;
 

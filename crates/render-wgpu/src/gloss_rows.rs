@@ -85,6 +85,9 @@ pub(crate) enum Target<'a> {
     Radiance(&'a wgpu::Buffer),
 }
 
+/// Writes the radiance of a table of bounces and a row.
+pub(crate) type ReadRow<'a> = dyn Fn(usize, u32, &mut [[f32; 4]]) + 'a;
+
 /// A run of receivers, few enough for one storage binding.
 #[derive(Debug)]
 pub(crate) struct RowSet {
@@ -307,7 +310,7 @@ impl RowSet {
     }
 
     /// Writes the radiance of bounces that are not in clusters; `read` writes that of a row and table, `functions` times RGB and a number.
-    pub(crate) fn write_radiance(&self, gpu: &Gpu, read: &dyn Fn(usize, u32, &mut [[f32; 4]])) {
+    pub(crate) fn write_radiance(&self, gpu: &Gpu, read: &ReadRow<'_>) {
         for step in &self.steps {
             let Some((table, buffer)) = &step.radiance else { continue };
             let functions = self.functions as usize;

@@ -1,7 +1,8 @@
 //! One transfer texture on the GPU, with its levels of detail.
 
-use crate::gloss::{FORMAT, Shared, array_view};
+use crate::gloss::FORMAT;
 use crate::gloss_rows::{Part, RowSet, Taken, Target, most_rows};
+use crate::gloss_shared::{Shared, array_view};
 use crate::{Error, Gpu, geometry, gpu_data};
 use coeff_io::{Arriving, ArrivingLight, GlossWay, Prt, TransferLevel, TransferSheet};
 

@@ -1,7 +1,7 @@
 //! Gloss at vertices on the GPU.
 
-use crate::gloss::{Shared, sized};
 use crate::gloss_rows::{RowSet, Taken, Target, most_rows};
+use crate::gloss_shared::{Shared, sized};
 use crate::gloss_sheet::{functions, radiance, tables};
 use crate::{Error, Gpu, geometry};
 use coeff_io::{ArrivingLight, GlossWay, Prt, VertexGloss};

@@ -7,6 +7,7 @@
 mod blend;
 mod bloom;
 mod check;
+mod draw;
 mod error;
 mod finish;
 mod frame;
@@ -14,6 +15,7 @@ mod fullscreen;
 mod geometry;
 mod gloss;
 mod gloss_rows;
+mod gloss_shared;
 mod gloss_sheet;
 mod gloss_text;
 mod gloss_vertices;

@@ -1,7 +1,7 @@
 //! Diffuse light of vertices whose transfer is in clusters: means and vectors times light once, then a short sum per vertex.
 
-use crate::gloss::sized;
 use crate::gloss_rows::{Factors, Kernels, Part, RowSet, Taken, Target, most_rows};
+use crate::gloss_shared::sized;
 use crate::{Error, Gpu};
 use coeff_io::{DiffuseLight, Prt, Table};
 use sh_math::Rgb;

@@ -39,7 +39,7 @@ pub struct Renderer {
 #[derive(Debug)]
 enum Relighting {
     Exact(Relight),
-    Clusters(ClusteredRelight),
+    Clusters(Box<ClusteredRelight>),
 }
 
 impl Relighting {
@@ -87,7 +87,7 @@ impl Renderer {
         let device = &gpu.device;
         let format = gpu.samples(surface::blends(prt));
         let relight = match &prt.compressed {
-            Some(table) => Relighting::Clusters(ClusteredRelight::new(gpu, prt, table)?),
+            Some(table) => Relighting::Clusters(Box::new(ClusteredRelight::new(gpu, prt, table)?)),
             None => {
                 let limit = gpu.limits.max_storage_buffer_binding_size;
                 Relighting::Exact(Relight::new(gpu, &prt.transfer, limit)?)

@@ -64,17 +64,15 @@ fn tridiagonal(z: &mut [Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     for i in 0..n {
         if diagonal[i] != 0.0 {
             let factors: Vec<f64> = (0..i).map(|j| (0..i).map(|k| z[i][k] * z[k][j]).sum()).collect();
-            for k in 0..i {
-                let u = z[k][i];
-                z[k][..i].iter_mut().zip(&factors).for_each(|(x, g)| *x -= g * u);
+            for row in z.iter_mut().take(i) {
+                let u = row[i];
+                row[..i].iter_mut().zip(&factors).for_each(|(x, g)| *x -= g * u);
             }
         }
         diagonal[i] = z[i][i];
         z[i][i] = 1.0;
-        for j in 0..i {
-            z[j][i] = 0.0;
-            z[i][j] = 0.0;
-        }
+        z[i][..i].fill(0.0);
+        z.iter_mut().take(i).for_each(|row| row[i] = 0.0);
     }
     (diagonal, beside)
 }

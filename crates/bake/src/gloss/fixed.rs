@@ -1,8 +1,9 @@
 //! Bounces under one light, as the paper has them: a table for each, from what the surfaces sent in the bounce before (\[T\] section 4.2).
 
-use crate::arrival::{Arrivals, Found};
+use crate::arrival::Arrivals;
 use crate::error::Error;
 use crate::extras::Done;
+use crate::found::Found;
 use crate::maps::arrive_as;
 use crate::mirror::{MOST_BANDS, Mirrors};
 use crate::progress::Stage;

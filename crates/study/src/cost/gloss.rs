@@ -185,7 +185,8 @@ fn options(done: &[(GlossRun, Prt)], textures: usize, at_texels: bool, target: f
     let runs = || done.iter().map(|(run, _)| run);
     let first = if at_texels && textures > 1 { 1 } else { 0 };
     let plain = runs().take(textures).skip(first).take(if first == 0 { 1 } else { textures });
-    let best = plain.clone().find(|run| run.picture <= target).or_else(|| plain.last());
+    let plain: Vec<&GlossRun> = plain.collect();
+    let best = plain.iter().find(|run| run.picture <= target).or(plain.last());
     let clusters = runs().skip(textures).find(|run| run.picture <= target);
     let compress = clusters.and_then(|run| run.setting.find("--compress").map(|at| run.setting[at..].to_owned()));
     let place = best.map_or(String::new(), |run| run.setting.clone());
