@@ -8,7 +8,7 @@
 mod glossy;
 
 use coeff_io::{GlossView, Refine};
-use glossy::{Recipe, Shot, baked, difference, drawn, traced};
+use glossy::{Recipe, Shot, Truth, baked, drawn, traced};
 use probe_io::Environment;
 use scene::Scene;
 use sh_math::lobe::{Lobe, roughness_of_exponent};
@@ -65,11 +65,11 @@ impl Draw<'_> {
             println!(
                 "tessellation | {name} | {} vertices | {:.4}",
                 prt.geometry.positions.len(),
-                difference(&picture, &truth)
+                truth.difference(&picture)
             );
             row.push(picture);
         }
-        row.push(truth);
+        row.push(truth.picture());
         self.write("glossy-tessellation", &[row])
     }
 
@@ -89,10 +89,10 @@ impl Draw<'_> {
             for (name, prt) in [("openness", &openness), ("fixed light", &fixed), ("relit", &relit)] {
                 let picture = drawn(prt, &light, &shot);
                 let bytes = prt.achieved.gloss.map_or(0, |gloss| gloss.bytes[1]);
-                println!("{bounces} bounces | {name} | {bytes} bytes | {:.4}", difference(&picture, &truth));
+                println!("{bounces} bounces | {name} | {bytes} bytes | {:.4}", truth.difference(&picture));
                 row.push(picture);
             }
-            row.push(truth);
+            row.push(truth.picture());
             rows.push(row);
         }
         self.write("glossy-bounces", &rows)
@@ -108,10 +108,10 @@ impl Draw<'_> {
             let recipe =
                 Recipe { bounces: 1, rays: 256, texels: Some(texels), refine: Refine::Off, ..Recipe::standard() };
             let picture = drawn(&baked(&scene, &recipe, None), &light, &shot);
-            println!("normal maps | {name} | {:.4}", difference(&picture, &truth));
+            println!("normal maps | {name} | {:.4}", truth.difference(&picture));
             row.push(picture);
         }
-        row.push(truth);
+        row.push(truth.picture());
         self.write("glossy-normal-maps", &[row])
     }
 
@@ -133,18 +133,18 @@ impl Draw<'_> {
                 let without = drawn(&prt, &light, &Shot { view: GlossView { tail: false, ..view }, ..shot });
                 println!(
                     "{name} | exponent {exponent} | with tail {:.4} | without {:.4}",
-                    difference(&with, &truth),
-                    difference(&without, &truth)
+                    truth.difference(&with),
+                    truth.difference(&without)
                 );
                 ours.push(with);
-                theirs.push(truth);
+                theirs.push(truth.picture());
             }
             rows.extend([ours, theirs]);
         }
         self.write("glossy-exponents", &rows)
     }
 
-    fn truth(&self, scene: &Scene, light: &Environment, shot: &Shot, bounces: u32, bent: bool) -> Linear {
+    fn truth(&self, scene: &Scene, light: &Environment, shot: &Shot, bounces: u32, bent: bool) -> Truth {
         traced(scene, light, shot, (self.paths, bounces, bent))
     }
 

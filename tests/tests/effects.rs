@@ -5,17 +5,25 @@ mod saving;
 use coeff_io::{BandChoice, Effect, Effects, Plan, PlanRow, Prt, Settings};
 use glam::{Affine2, Vec2, Vec3, Vec4};
 use probe_io::Environment;
-use saving::{Cost, TOLERANCE, baked, cheap, difference, scenes, with};
+use saving::{Cost, GLOSS_MISSED, TOLERANCE, baked, cheap, difference, mean_difference, scenes, with};
 use scene::{AlphaMode, Material, Scene, Texture, TextureSlot, Wrap};
 use sh_math::Bands;
 
-/// Of every known scene and six real ones: within the tolerance, and never dearer than the survey.
+/// Of every known scene and six real ones: within the tolerance, and never dearer than the survey. Gloss has a worth of its own: where it is not
+/// called for, the light that surfaces mirror may be missing, 2 % of an open receiver's on average at most.
 #[test]
 fn auto_agrees_with_all() {
     for (name, scene) in scenes() {
         let (auto, all) = (with(&scene, Effects::Auto), with(&scene, Effects::All));
-        let off = difference(&auto, &all);
-        assert!(off <= TOLERANCE, "{name}: auto is {off} off");
+        if row(&auto.plan, Effect::Glossy).simulate {
+            let off = difference(&auto, &all);
+            assert!(off <= TOLERANCE, "{name}: auto is {off} off");
+        } else {
+            let off = difference(&auto, &without(&scene, Effect::Glossy));
+            assert!(off <= TOLERANCE, "{name}: auto is {off} off");
+            let missed = mean_difference(&auto, &all);
+            assert!(missed <= GLOSS_MISSED, "{name}: without gloss, auto is {missed} off");
+        }
         let (few, many) = (Cost::of(&auto), Cost::of(&all));
         assert!(few.rays <= many.rays, "{name}: {} rays against {}", few.rays, many.rays);
         // The headers differ by the words of the plan; the arrays may only shrink.
@@ -262,11 +270,13 @@ fn skipping_is_seen(scene: &Scene, effect: Effect, decision: &str) {
     assert!(missed > 4.0 * TOLERANCE, "{effect:?}: skipped wrongly, yet only {missed} is missed");
 }
 
-/// The same for what is drawn: pictures under a sky.
+/// The same for what is drawn: pictures under a sky. Where nothing calls for gloss by direction, it is in neither.
 fn skipping_is_drawn(scene: &Scene, effect: Effect) {
     let auto = with(scene, Effects::Auto);
     assert!(row(&auto.plan, effect).simulate, "{:?}", row(&auto.plan, effect));
-    let off = unlike_pictures(&auto, &with(scene, Effects::All));
+    let glossy = row(&auto.plan, Effect::Glossy).simulate;
+    let all = if glossy { with(scene, Effects::All) } else { without(scene, Effect::Glossy) };
+    let off = unlike_pictures(&auto, &all);
     assert!(off <= TOLERANCE, "{effect:?}: auto is {off} off");
     let missed = unlike_pictures(&auto, &without(scene, effect));
     assert!(missed > 4.0 * TOLERANCE, "{effect:?}: skipped wrongly, yet only {missed} is missed");

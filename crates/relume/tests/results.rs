@@ -33,7 +33,7 @@ fn a_bake_tells_what_it_holds() {
     let (out, said) = succeed(folder, &bake);
     assert!(out.is_empty() && said.contains("a.prt") && said.contains("rays"), "{said}");
     let seen = json(folder, &["inspect", "a.prt", "--json"]);
-    assert_eq!(seen["version"], 3);
+    assert_eq!(seen["version"], 4);
     assert_eq!(seen["header"]["settings"]["seed"], 5);
     assert_eq!(seen["header"]["bands"], 3);
     assert_eq!(seen["file_length"], fs::metadata(folder.join("a.prt")).unwrap().len());

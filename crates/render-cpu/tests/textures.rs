@@ -175,10 +175,12 @@ fn texels_follow_the_light_and_leave_other_meshes_alone() {
 fn textures_that_do_not_fit_are_refused() {
     type Edit = fn(&mut Prt);
     let edits: [(&str, Edit); 4] = [
-        ("beyond it", |prt| prt.transfer_textures.as_mut().unwrap().sheets[0].levels[0].places[0] = 64),
+        ("do not ascend within", |prt| prt.transfer_textures.as_mut().unwrap().sheets[0].levels[0].places[0] = 64),
         ("no level", |prt| prt.transfer_textures.as_mut().unwrap().sheets[0].levels.clear()),
         ("does not exist", |prt| prt.transfer_textures.as_mut().unwrap().sheet_of_mesh[0] = Some(1)),
-        ("does not hold", |prt| prt.transfer_textures.as_mut().unwrap().sheets[0].levels[1].diffuse.bytes.clear()),
+        ("0 bytes are not 16 rows", |prt| {
+            prt.transfer_textures.as_mut().unwrap().sheets[0].levels[1].diffuse.bytes.clear()
+        }),
     ];
     draw(&pyramid(), &front(SIZE));
     for (word, edit) in edits {

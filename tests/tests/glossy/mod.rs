@@ -78,19 +78,48 @@ pub(crate) fn drawn(prt: &Prt, environment: &Environment, shot: &Shot) -> Vec<[f
     let frame = render_cpu::Frame {
         gloss: shot.view,
         sky: false,
-        supersample: 2,
+        // Outlines as the paths have them, which cover pixels evenly.
+        supersample: 6,
         ..render_cpu::Frame::plain(camera, shot.size[0], shot.size[1])
     };
     render_cpu::render(prt, environment, &frame).expect("it draws").linear
 }
 
-/// Paths with the same lobes under the whole light, without sky; `bent` as for diffuse light of transfer textures.
+/// What paths find, twice and independently: the noise of one is not that of the other.
+pub(crate) struct Truth([Vec<[f32; 3]>; 2]);
+
+impl Truth {
+    /// Both together.
+    pub(crate) fn picture(&self) -> Vec<[f32; 3]> {
+        let [a, b] = &self.0;
+        a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|c| 0.5 * (a[c] + b[c]))).collect()
+    }
+
+    /// Relative root mean square of the difference of a picture, without the noise of the paths: the mean of `(p - a)(p - b)` is that of
+    /// `(p - t)^2` where a and b are independent and t their expectation. Brighter than four times the mean is cut there: fireflies and outlines of lamps.
+    pub(crate) fn difference(&self, picture: &[[f32; 3]]) -> f64 {
+        let [a, b] = &self.0;
+        let lit = a.iter().filter(|p| p.iter().any(|x| *x > 0.0)).count().max(1);
+        let mean = a.as_flattened().iter().sum::<f32>() / (3 * lit) as f32;
+        let cut = |x: f32| f64::from(x.min(4.0 * mean));
+        let halves = a.as_flattened().iter().zip(b.as_flattened());
+        let (mut off, mut all) = (0.0, 0.0);
+        for (p, (a, b)) in picture.as_flattened().iter().zip(halves) {
+            let [p, a, b] = [*p, *a, *b].map(cut);
+            off += (p - a) * (p - b);
+            all += a * b;
+        }
+        (off.max(0.0) / all).sqrt()
+    }
+}
+
+/// Paths with the same lobes under the whole light, without sky, two times `samples`; `bent` as for diffuse light of transfer textures.
 pub(crate) fn traced(
     scene: &Scene,
     environment: &Environment,
     shot: &Shot,
     (samples, bounces, bent): (u32, u32, bool),
-) -> Vec<[f32; 3]> {
+) -> Truth {
     let lobe = match shot.view.lobe {
         Lobe::Ggx => reference::Lobe::Ggx,
         Lobe::Phong => reference::Lobe::Phong,
@@ -98,20 +127,12 @@ pub(crate) fn traced(
     let gloss = Gloss { roughness: shot.view.roughness, ..Gloss::new(Mirroring::Lobe(lobe)) };
     let world = World::with_normal_maps(scene, bent).with_gloss(gloss);
     let light = Light::new(environment).with_sky(&Environment::constant([0.0; 3]));
-    let settings = reference::Settings { samples, seed: 1, max_bounces: Some(bounces) };
     let camera = &scene.cameras[shot.camera.min(scene.cameras.len() - 1)];
-    reference::render(&world, &light, camera, shot.size, &settings, &|_| ControlFlow::Continue(()))
-        .expect("nobody stops it")
-        .pixels
-}
-
-/// Relative root mean square of the difference, pixels brighter than four times the mean cut there: fireflies and outlines of lamps.
-pub(crate) fn difference(ours: &[[f32; 3]], theirs: &[[f32; 3]]) -> f64 {
-    let lit = theirs.iter().filter(|p| p.iter().any(|x| *x > 0.0)).count().max(1);
-    let mean = theirs.as_flattened().iter().sum::<f32>() / (3 * lit) as f32;
-    let cut = |x: f32| f64::from(x.min(4.0 * mean));
-    let pairs = ours.as_flattened().iter().zip(theirs.as_flattened());
-    let (off, all) =
-        pairs.fold((0.0, 0.0), |(off, all), (a, b)| (off + (cut(*a) - cut(*b)).powi(2), all + cut(*b) * cut(*b)));
-    (off / all).sqrt()
+    let half = |seed| {
+        let settings = reference::Settings { samples, seed, max_bounces: Some(bounces) };
+        reference::render(&world, &light, camera, shot.size, &settings, &|_| ControlFlow::Continue(()))
+            .expect("nobody stops it")
+            .pixels
+    };
+    Truth([half(1), half(2)])
 }

@@ -23,9 +23,22 @@ pub(crate) fn with(scene: &Scene, effects: Effects) -> Prt {
     baked(scene, &Settings { effects, ..cheap() })
 }
 
+/// Mean share of an open receiver's light that gloss may be short of where it is not called for: glazed cups send on little.
+pub(crate) const GLOSS_MISSED: f64 = 0.02;
+
 /// Largest norm over receivers and channels of the difference of what two bakes send out under any light: albedo times
 /// transfer, against that of a white open receiver.
 pub(crate) fn difference(a: &Prt, b: &Prt) -> f64 {
+    differences(a, b).into_iter().fold(0.0, f64::max)
+}
+
+/// The mean of the same.
+pub(crate) fn mean_difference(a: &Prt, b: &Prt) -> f64 {
+    let all = differences(a, b);
+    all.iter().sum::<f64>() / all.len().max(1) as f64
+}
+
+fn differences(a: &Prt, b: &Prt) -> Vec<f64> {
     assert_eq!(a.geometry.positions, b.geometry.positions, "the same receivers");
     let n = (a.transfer.bands.max(b.transfer.bands) as usize).pow(2);
     let value = |prt: &Prt, vertex: usize, i: usize, c: usize| {
@@ -35,14 +48,14 @@ pub(crate) fn difference(a: &Prt, b: &Prt) -> f64 {
     };
     // Integral of (cos/pi)^2 over the hemisphere.
     let open = (2.0 / (3.0 * std::f64::consts::PI)).sqrt();
-    let mut worst: f64 = 0.0;
+    let mut all = Vec::new();
     for (vertex, albedo) in a.transfer.albedo.iter().enumerate() {
         for (c, &albedo) in albedo.iter().enumerate() {
             let square = |i: usize| (value(a, vertex, i, c) - value(b, vertex, i, c)).powi(2);
-            worst = worst.max(f64::from(albedo) * (0..n).map(square).sum::<f64>().sqrt() / open);
+            all.push(f64::from(albedo) * (0..n).map(square).sum::<f64>().sqrt() / open);
         }
     }
-    worst
+    all
 }
 
 /// What a bake took.

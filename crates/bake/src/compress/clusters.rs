@@ -4,7 +4,7 @@ use super::eigen::symmetric;
 use rayon::prelude::*;
 
 /// Turns of assigning rows and finding means and vectors anew.
-const TURNS: usize = 4;
+const TURNS: usize = 2;
 /// Means near to a row whose clusters are tried.
 const TRIED: usize = 8;
 

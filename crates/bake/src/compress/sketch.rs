@@ -4,7 +4,7 @@ use super::eigen::symmetric;
 use rayon::prelude::*;
 
 /// Most vectors of a sketch.
-const MOST_RANK: usize = 160;
+const MOST_RANK: usize = 96;
 
 /// Orthonormal vectors.
 #[derive(Debug, Clone)]
@@ -17,7 +17,7 @@ pub struct Sketch {
 }
 
 impl Sketch {
-    /// The fewest vectors that hold sample rows to within a relative error, root mean square; 160 at most.
+    /// The fewest vectors that hold sample rows to within a relative error, root mean square; 96 at most.
     ///
     /// The principal components of the rows, not centred, by the eigenvectors of their Gram matrix.
     ///

@@ -12,7 +12,7 @@ use coeff_io::{
 use std::ops::Range;
 
 /// Most clusters and vectors.
-const MOST_CLUSTERS: u32 = 256;
+const MOST_CLUSTERS: u32 = 128;
 const MOST_RANK: u32 = 64;
 
 /// All that was found.
