@@ -147,12 +147,18 @@ impl Choice {
         let weights: Vec<f32> = rows
             .par_chunks(columns)
             .zip(&of)
-            .flat_map_iter(|(row, &c)| self.clusters.each[c as usize].weights(row, self.rank))
+            .flat_map_iter(|(row, &c)| {
+                let mut weights = self.clusters.each[c as usize].weights(row, self.rank);
+                weights.resize(self.rank, 0.0);
+                weights
+            })
             .collect();
         let mut values = Vec::new();
         for cluster in &self.clusters.each {
             values.extend_from_slice(&cluster.mean);
+            let end = values.len() + self.rank * columns;
             cluster.vectors.iter().take(self.rank).for_each(|vector| values.extend_from_slice(vector));
+            values.resize(end, 0.0);
         }
         let (clusters, rank) = (self.clusters.each.len() as u32, self.rank as u32);
         let book = match sketch {

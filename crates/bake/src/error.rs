@@ -44,9 +44,9 @@ pub enum Error {
         /// Bytes that were allowed.
         allowed: u64,
     },
-    /// Light maps do not fit into the memory allowed.
+    /// Light maps or transfer textures do not fit into the memory allowed.
     #[error(
-        "light maps of {texels} texels need {needed} bytes, more than the {allowed} of --memory; use fewer --texels, fewer --bands, a fixed light, or allow more"
+        "maps and gloss of {texels} texels and vertices need {needed} bytes, more than the {allowed} of --memory; use fewer --texels, fewer --bands, a fixed light, or allow more"
     )]
     MapMemory {
         /// Texels that surfaces touch.

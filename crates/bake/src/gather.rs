@@ -2,6 +2,7 @@
 
 use crate::directions::{DirectionBank, DirectionSet, Step};
 use crate::domain::Domain;
+use crate::dot::dot;
 use crate::foresight::Choice;
 use crate::hit::{NearPoint, PackedHit, near_points, packed};
 use crate::mirror::Mirrors;
@@ -375,21 +376,4 @@ fn add_open(set: &DirectionSet, range: std::ops::Range<usize>, open: &[f32], sum
     for (i, sum) in sums.iter_mut().enumerate() {
         *sum += dot(&set.basis[i * n + range.start..i * n + range.end], open);
     }
-}
-
-/// Dot product in eight lanes and blocks of 512: a fixed order that vectorises, with f64 between blocks.
-fn dot(a: &[f32], b: &[f32]) -> f64 {
-    let mut total = 0.0f64;
-    for (a, b) in a.chunks(512).zip(b.chunks(512)) {
-        let mut lanes = [0.0f32; 8];
-        let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
-        let rest: f32 = a8.remainder().iter().zip(b8.remainder()).map(|(x, y)| x * y).sum();
-        for (x, y) in a8.zip(b8) {
-            for k in 0..8 {
-                lanes[k] += x[k] * y[k];
-            }
-        }
-        total += lanes.iter().map(|&x| f64::from(x)).sum::<f64>() + f64::from(rest);
-    }
-    total
 }

@@ -29,7 +29,7 @@ use sh_math::{Bands, Rgb};
 use sheets::SheetPlan;
 
 /// Receivers that a sketch is learned from.
-const SAMPLE: usize = 768;
+const SAMPLE: usize = 1024;
 /// Numbers of a row of bounces up to which it is kept in full.
 const SHORT: usize = 96;
 /// Least bands over directions: what the cosine of diffuse transfer needs.
@@ -81,7 +81,7 @@ impl Job<'_> {
                 Bouncing::Fixed(&fixed)
             }
             None if !self.bounces() => Bouncing::None,
-            None if whole.long() <= SHORT => Bouncing::Whole,
+            None if whole.long() <= SHORT || self.extras.compression.bounces <= 0.0 => Bouncing::Whole,
             None => {
                 sketch = self.sketch(&whole, &plans, &vertices)?;
                 Bouncing::Sketched(&sketch)

@@ -17,6 +17,7 @@ mod bundle;
 pub mod compress;
 mod directions;
 mod domain;
+mod dot;
 mod drawn;
 mod error;
 mod extras;

@@ -24,7 +24,7 @@ Examples:
   relume bake house.glb -o house.prt --storage texture --probe noon.hdr --light fixed --window auto --encoding bc6h
   relume bake house.glb -o house.prt --volume 0.5m --volume-levels 1
   relume bake lobby.glb -o lobby.prt --effects visibility,interreflection,color,specular,glossy,normal-maps --storage transfer --texels 1024
-  relume bake lobby.glb -o lobby.prt --storage transfer --compress 0.02 --bounce-error 0.05
+  relume bake lobby.glb -o lobby.prt --storage transfer --compress 0.02 --bounce-error 0.2
 
 Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest result so far stays.";
 
@@ -119,6 +119,15 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
     }
     if let Some(gloss) = &achieved.gloss {
         console.notice(&gloss_text(gloss, prt.settings.quality));
+        let [.., bounces] = gloss.compression;
+        let asked = options.extras.gloss.bounce_error;
+        if bounces > 1.1 * asked {
+            console.notice(&format!(
+                "clusters hold bounces to {:.1} %, not to the {:.1} % asked for; --bounce-error 0 keeps them whole",
+                100.0 * bounces,
+                100.0 * asked
+            ));
+        }
     }
     let repairs = achieved.repairs;
     if repairs.inside + repairs.bad_normals > 0 {

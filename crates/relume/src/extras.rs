@@ -24,7 +24,7 @@ pub(crate) struct ExtraOptions {
     #[command(flatten)]
     maps: MapOptions,
     #[command(flatten)]
-    gloss: GlossOptions,
+    pub(crate) gloss: GlossOptions,
     #[command(flatten)]
     volume: VolumeOptions,
     /// Whether light maps, volumes and glossy bounces answer to any light, or hold that of --probe: fixed takes a small part of the bytes. A fixed volume is

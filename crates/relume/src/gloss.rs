@@ -14,8 +14,8 @@ pub(crate) struct GlossOptions {
     /// Puts rows of transfer and visibility into clusters (clustered PCA), with this relative error at most; none keeps them as they are.
     #[arg(long, value_name = "E", value_parser = share)]
     pub(crate) compress: Option<f32>,
-    /// Relative error allowed to the clusters of glossy bounces that can be relit.
-    #[arg(long, value_name = "E", default_value_t = Compression::default().bounces, value_parser = share)]
+    /// Relative error allowed to the clusters of glossy bounces that can be relit; 0 keeps them whole.
+    #[arg(long, value_name = "E", default_value_t = Compression::default().bounces, value_parser = share_or_none)]
     pub(crate) bounce_error: f32,
 }
 
@@ -39,6 +39,10 @@ impl GlossOptions {
         let options = [("--sheets", self.sheets != SheetSet::Object), ("--no-levels", self.no_levels)];
         options.into_iter().find(|(_, is_typed)| *is_typed).map(|(name, _)| name)
     }
+}
+
+fn share_or_none(text: &str) -> Result<f32, String> {
+    if text.parse() == Ok(0.0) { Ok(0.0) } else { share(text).map_err(|what| format!("{what}, or 0")) }
 }
 
 fn share(text: &str) -> Result<f32, String> {

@@ -1,10 +1,11 @@
 //! Clustered principal components: each row is the mean of its cluster and a combination of the cluster's own vectors.
 
 use super::eigen::symmetric;
+use crate::dot::dot;
 use rayon::prelude::*;
 
 /// Turns of assigning rows and finding means and vectors anew.
-const TURNS: usize = 2;
+const TURNS: usize = 4;
 /// Means near to a row whose clusters are tried.
 const TRIED: usize = 8;
 
@@ -18,7 +19,7 @@ pub(crate) struct Clusters {
 #[derive(Debug, Clone)]
 pub(crate) struct Cluster {
     pub(crate) mean: Vec<f32>,
-    /// The largest variance first, orthonormal.
+    /// The largest variance first, orthonormal; fewer than columns where rows are few.
     pub(crate) vectors: Vec<Vec<f32>>,
     /// Sum over its rows of the squares along each vector, and of those along all that are not kept.
     variances: Vec<f64>,
@@ -91,21 +92,12 @@ impl Cluster {
         let mut mean = vec![0.0f64; columns];
         members.iter().map(row).for_each(|row| mean.iter_mut().zip(row).for_each(|(m, x)| *m += f64::from(*x)));
         mean.iter_mut().for_each(|m| *m *= share);
-        let mut covariance = vec![0.0f64; columns * columns];
-        let mut away = vec![0.0f64; columns];
-        for row in members.iter().map(row) {
-            away.iter_mut().zip(row).zip(&mean).for_each(|((away, x), m)| *away = f64::from(*x) - m);
-            for (i, a) in away.iter().enumerate() {
-                let line = &mut covariance[i * columns..i * columns + i + 1];
-                line.iter_mut().zip(&away).for_each(|(sum, b)| *sum += a * b);
-            }
-        }
-        for i in 0..columns {
-            for j in 0..i {
-                covariance[j * columns + i] = covariance[i * columns + j];
-            }
-        }
-        let (values, vectors) = symmetric(&covariance, columns);
+        let away: Vec<Vec<f32>> = members
+            .iter()
+            .map(row)
+            .map(|row| row.iter().zip(&mean).map(|(x, m)| (f64::from(*x) - m) as f32).collect())
+            .collect();
+        let (values, vectors) = if away.len() < columns { of_few(&away) } else { of_many(&away, columns) };
         let short = |vector: Vec<f64>| vector.into_iter().map(|x| x as f32).collect();
         Self {
             mean: mean.into_iter().map(|m| m as f32).collect(),
@@ -116,7 +108,44 @@ impl Cluster {
 
     /// How far a row lies along each of the first vectors.
     pub(crate) fn weights(&self, row: &[f32], rank: usize) -> Vec<f32> {
-        let along = |vector: &Vec<f32>| row.iter().zip(&self.mean).zip(vector).map(|((x, m), v)| (x - m) * v).sum();
-        self.vectors.iter().take(rank).map(along).collect()
+        let away: Vec<f32> = row.iter().zip(&self.mean).map(|(x, m)| x - m).collect();
+        self.vectors.iter().take(rank).map(|vector| dot(&away, vector) as f32).collect()
     }
+}
+
+/// Principal vectors from the covariance.
+fn of_many(away: &[Vec<f32>], columns: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let mut covariance = vec![0.0f64; columns * columns];
+    for row in away {
+        for (i, a) in row.iter().enumerate() {
+            let line = &mut covariance[i * columns..i * columns + i + 1];
+            line.iter_mut().zip(row).for_each(|(sum, b)| *sum += f64::from(*a) * f64::from(*b));
+        }
+    }
+    for i in 0..columns {
+        for j in 0..i {
+            covariance[j * columns + i] = covariance[i * columns + j];
+        }
+    }
+    symmetric(&covariance, columns)
+}
+
+/// The same where rows are fewer than numbers, from the dot products of the rows.
+fn of_few(away: &[Vec<f32>]) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let n = away.len();
+    let gram: Vec<f64> = (0..n * n).map(|k| dot(&away[(k / n).max(k % n)], &away[(k / n).min(k % n)])).collect();
+    let (mut values, combinations) = symmetric(&gram, n);
+    // Beyond the digits of the rows directions are noise.
+    let sound = values.iter().take_while(|value| **value > 1e-10 * values[0]).count();
+    values.truncate(sound);
+    let vector = |(value, weights): (&f64, Vec<f64>)| {
+        let mut sum = vec![0.0f64; away[0].len()];
+        for (row, weight) in away.iter().zip(weights) {
+            sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += weight * f64::from(*x));
+        }
+        sum.iter_mut().for_each(|x| *x /= value.sqrt());
+        sum
+    };
+    let vectors = values.iter().zip(combinations).map(vector).collect();
+    (values, vectors)
 }

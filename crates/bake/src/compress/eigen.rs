@@ -17,11 +17,11 @@ pub(crate) fn symmetric(matrix: &[f64], n: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
     }
     let mut z: Vec<Vec<f64>> = matrix.chunks_exact(n).map(<[f64]>::to_vec).collect();
     let (mut diagonal, mut beside) = tridiagonal(&mut z);
-    iterate(&mut diagonal, &mut beside, &mut z);
+    let mut vectors: Vec<Vec<f64>> = (0..n).map(|k| z.iter().map(|row| row[k]).collect()).collect();
+    iterate(&mut diagonal, &mut beside, &mut vectors);
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by(|&a, &b| diagonal[b].total_cmp(&diagonal[a]).then(a.cmp(&b)));
-    let vectors = order.iter().map(|&k| z.iter().map(|row| row[k]).collect()).collect();
-    (order.iter().map(|&k| diagonal[k]).collect(), vectors)
+    (order.iter().map(|&k| diagonal[k]).collect(), order.iter().map(|&k| std::mem::take(&mut vectors[k])).collect())
 }
 
 /// Reduces `z` to three diagonals; `z` becomes the orthogonal transform.
@@ -42,18 +42,19 @@ fn tridiagonal(z: &mut [Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
         beside[i] = scale * g;
         h -= f * g;
         row[i - 1] = f - g;
+        // Only what is left of the diagonal is kept: each row counts as a column too.
         let mut image = vec![0.0; i];
-        for (j, image) in image.iter_mut().enumerate() {
-            let below: f64 = (j + 1..i).map(|k| z[k][j] * row[k]).sum();
-            *image = (z[j][..=j].iter().zip(&row).map(|(a, b)| a * b).sum::<f64>() + below) / h;
+        for j in 0..i {
+            image[j] += dot(&z[j][..=j], &row);
+            add(&mut image[..j], row[j], &z[j]);
         }
-        let half = image.iter().zip(&row).map(|(a, b)| a * b).sum::<f64>() / (h + h);
+        image.iter_mut().for_each(|e| *e /= h);
+        let half = dot(&image, &row) / (h + h);
         image.iter_mut().zip(&row).for_each(|(e, u)| *e -= half * u);
         for j in 0..i {
             let (u, e) = (row[j], image[j]);
-            for k in 0..=j {
-                z[j][k] -= u * image[k] + e * row[k];
-            }
+            add(&mut z[j][..=j], -u, &image);
+            add(&mut z[j][..=j], -e, &row);
         }
         for (j, u) in row.iter().enumerate() {
             z[j][i] = u / h;
@@ -63,10 +64,13 @@ fn tridiagonal(z: &mut [Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     }
     for i in 0..n {
         if diagonal[i] != 0.0 {
-            let factors: Vec<f64> = (0..i).map(|j| (0..i).map(|k| z[i][k] * z[k][j]).sum()).collect();
+            let mut factors = vec![0.0; i];
+            for k in 0..i {
+                add(&mut factors, z[i][k], &z[k]);
+            }
             for row in z.iter_mut().take(i) {
                 let u = row[i];
-                row[..i].iter_mut().zip(&factors).for_each(|(x, g)| *x -= g * u);
+                add(&mut row[..i], -u, &factors);
             }
         }
         diagonal[i] = z[i][i];
@@ -77,8 +81,8 @@ fn tridiagonal(z: &mut [Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     (diagonal, beside)
 }
 
-/// QL with implicit shifts; the columns of `z` become the eigenvectors.
-fn iterate(diagonal: &mut [f64], beside: &mut [f64], z: &mut [Vec<f64>]) {
+/// QL with implicit shifts; the columns of the transform become the eigenvectors, one after the other as they lie in memory.
+fn iterate(diagonal: &mut [f64], beside: &mut [f64], vectors: &mut [Vec<f64>]) {
     let n = diagonal.len();
     beside.rotate_left(1);
     beside[n - 1] = 0.0;
@@ -111,10 +115,11 @@ fn iterate(diagonal: &mut [f64], beside: &mut [f64], z: &mut [Vec<f64>]) {
                 p = sine * r;
                 diagonal[i + 1] = g + p;
                 g = cosine * r - b;
-                for row in z.iter_mut() {
-                    let (a, b) = (row[i], row[i + 1]);
-                    row[i + 1] = sine * a + cosine * b;
-                    row[i] = cosine * a - sine * b;
+                let (before, after) = vectors.split_at_mut(i + 1);
+                for (x, y) in before[i].iter_mut().zip(&mut after[0]) {
+                    let (a, b) = (*x, *y);
+                    *y = sine * a + cosine * b;
+                    *x = cosine * a - sine * b;
                 }
             }
             if !broke {
@@ -124,6 +129,25 @@ fn iterate(diagonal: &mut [f64], beside: &mut [f64], z: &mut [Vec<f64>]) {
             }
         }
     }
+}
+
+/// Dot product of the shorter length in four lanes: a fixed order that vectorises.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (&a[..a.len().min(b.len())], &b[..a.len().min(b.len())]);
+    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
+    let mut lanes = [0.0; 4];
+    for (x, y) in a4.zip(b4) {
+        for k in 0..4 {
+            lanes[k] += x[k] * y[k];
+        }
+    }
+    lanes.iter().sum::<f64>() + rest
+}
+
+/// Adds a multiple of the first of `values` to all of `sums`.
+fn add(sums: &mut [f64], factor: f64, values: &[f64]) {
+    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += factor * value);
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! A few vectors that hold what many long rows have in common: rows are kept as their dot products with them while a bake goes on.
 
 use super::eigen::symmetric;
+use crate::dot::dot;
 use rayon::prelude::*;
 
 /// Most vectors of a sketch.
-const MOST_RANK: usize = 96;
+const MOST_RANK: usize = 320;
 
 /// Orthonormal vectors.
 #[derive(Debug, Clone)]
@@ -17,7 +18,7 @@ pub struct Sketch {
 }
 
 impl Sketch {
-    /// The fewest vectors that hold sample rows to within a relative error, root mean square; 96 at most.
+    /// The fewest vectors that hold sample rows to within a relative error, root mean square; 320 at most.
     ///
     /// The principal components of the rows, not centred, by the eigenvectors of their Gram matrix.
     ///
@@ -28,7 +29,6 @@ impl Sketch {
         assert!(columns > 0 && rows.len().is_multiple_of(columns), "whole rows");
         let rows: Vec<&[f32]> = rows.chunks_exact(columns).collect();
         let n = rows.len();
-        let dot = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum::<f64>();
         let gram: Vec<f64> =
             (0..n * n).into_par_iter().map(|k| dot(rows[(k / n).max(k % n)], rows[(k / n).min(k % n)])).collect();
         let (values, vectors) = symmetric(&gram, n);
@@ -93,8 +93,7 @@ impl Sketch {
     /// The dot products of a row with the vectors.
     #[must_use]
     pub fn project(&self, row: &[f32]) -> Vec<f32> {
-        let dot = |vector: &[f32]| vector.iter().zip(row).map(|(a, b)| a * b).sum();
-        self.vectors.chunks_exact(self.columns).map(dot).collect()
+        self.vectors.chunks_exact(self.columns).map(|vector| dot(vector, row) as f32).collect()
     }
 
     /// The row that has these dot products.
