@@ -30,12 +30,14 @@ pub struct Price {
     pub visibility: f64,
     /// Seconds of the closest-hit rays and of the bounces that are expected.
     pub interreflection: f64,
+    /// Seconds of gloss at vertices, as its rays at the speed of all others: nothing of it is tried.
+    pub gloss: f64,
     /// Receivers that were tried.
     pub tried: u64,
 }
 
-/// Decides which effects a scene calls for and tries a few hundred receivers; `now` tells the time since any fixed moment. What light maps
-/// and volumes take comes on top.
+/// Decides which effects a scene calls for and tries a few hundred receivers; `now` tells the time since any fixed moment. What light maps,
+/// transfer textures and volumes take comes on top.
 ///
 /// # Errors
 /// As [`crate::bake`].
@@ -45,9 +47,11 @@ pub fn price(scene: &Scene, settings: &Settings, extras: &Extras, now: &dyn Fn()
     let scene = &*refined(scene, settings, &|_| ControlFlow::Continue(()))?;
     let prepared = prepare(scene, settings, extras)?;
     let preparation = (now() - began).as_secs_f64();
-    let mut price = Price { plan: prepared.plan.clone(), preparation, visibility: 0.0, interreflection: 0.0, tried: 0 };
+    let plan = prepared.plan.clone();
+    let mut price = Price { plan, preparation, visibility: 0.0, interreflection: 0.0, gloss: 0.0, tried: 0 };
     if simulates(&price.plan, Effect::Visibility) && !prepared.traced.is_empty() {
         try_out(&prepared, settings, now, &mut price)?;
+        price.gloss = gloss(&price);
     }
     Ok(price)
 }
@@ -107,6 +111,14 @@ fn try_out(
         price.interreflection = scale * (lookups + bounce * f64::from(plan.expected_bounces));
     }
     Ok(())
+}
+
+/// Seconds of the rays of gloss at the speed of those that were tried.
+fn gloss(price: &Price) -> f64 {
+    let rays =
+        |effect| price.plan.rows.iter().filter(|row| row.effect == effect).map(|row| row.rays).sum::<u64>() as f64;
+    let tried = rays(Effect::Visibility) + rays(Effect::Interreflection);
+    if tried > 0.0 { rays(Effect::Glossy) * (price.visibility + price.interreflection) / tried } else { 0.0 }
 }
 
 /// Runs of neighbours, evenly spread over the order; all of them where there are few.

@@ -11,11 +11,13 @@ use std::path::Path;
 /// Writes `positions.npy` `[R, 3]`, `normals.npy` `[R, 3]`, `transfer.npy` `[R, n*n, C]` and, where C = 1,
 /// `albedo.npy` `[R, 3]` into `folder`, which is made if need be; all of little-endian f32.
 ///
-/// Where the file holds light maps, also `uv1.npy` `[R, 2]`, where they lie, and `triangles.npy` `[T, 3]` of little-endian u32: unwrapping
+/// Where the file holds light maps or transfer textures, also `uv1.npy` `[R, 2]`, where they lie, and `triangles.npy` `[T, 3]` of little-endian u32: unwrapping
 /// splits vertices, so that the scene's own are not those of the maps.
 ///
 /// Where C = 3 the albedo is multiplied into the transfer, so that `transfer * light` is outgoing radiance; where
 /// C = 1 outgoing radiance is `albedo * (transfer * light)`. Each file is written beside and renamed.
+///
+/// Where the file holds gloss or transfer textures, also their arrays: docs/format.md, Exports.
 ///
 /// # Errors
 /// `Io`.
@@ -26,11 +28,12 @@ pub fn npy(prt: &Prt, folder: &Path) -> Result<(), Error> {
     let (coefficients, channels) = (u64::from(transfer.bands).pow(2), u64::from(transfer.channels));
     array(&folder.join("positions.npy"), &[rows, 3], prt.geometry.positions.as_flattened().iter().copied())?;
     array(&folder.join("normals.npy"), &[rows, 3], prt.geometry.normals.as_flattened().iter().copied())?;
-    if prt.maps.is_some() {
+    if prt.maps.is_some() || prt.transfer_textures.is_some() {
         array(&folder.join("uv1.npy"), &[rows, 2], prt.geometry.uv1.as_flattened().iter().copied())?;
         let triangles = prt.geometry.triangles.as_flattened();
         indices(&folder.join("triangles.npy"), &[prt.geometry.triangles.len() as u64, 3], triangles)?;
     }
+    crate::export_gloss::gloss_npy(prt, folder)?;
     let path = folder.join("transfer.npy");
     let shape = [rows, coefficients, channels];
     if channels == 1 {
@@ -67,7 +70,7 @@ pub fn light_json(light: &Rgb, path: &Path) -> Result<(), Error> {
     Ok(replace(path, |file| writeln!(file, "{value:#}"))?)
 }
 
-fn indices(path: &Path, shape: &[u64], values: &[u32]) -> Result<(), Error> {
+pub(crate) fn indices(path: &Path, shape: &[u64], values: &[u32]) -> Result<(), Error> {
     let dtype = npyz::DType::Plain("<u4".parse().map_err(io::Error::other)?);
     Ok(replace(path, |file| {
         let mut writer = npyz::WriteOptions::new().dtype(dtype).shape(shape).writer(file).begin_nd()?;
@@ -76,7 +79,7 @@ fn indices(path: &Path, shape: &[u64], values: &[u32]) -> Result<(), Error> {
     })?)
 }
 
-fn array(path: &Path, shape: &[u64], values: impl Iterator<Item = f32>) -> Result<(), Error> {
+pub(crate) fn array(path: &Path, shape: &[u64], values: impl Iterator<Item = f32>) -> Result<(), Error> {
     let dtype = npyz::DType::Plain("<f4".parse().map_err(io::Error::other)?);
     Ok(replace(path, |file| {
         let mut writer = npyz::WriteOptions::new().dtype(dtype).shape(shape).writer(file).begin_nd()?;

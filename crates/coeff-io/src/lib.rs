@@ -15,6 +15,7 @@ mod dds;
 mod eight_bits;
 mod error;
 pub mod export;
+mod export_gloss;
 mod export_textures;
 mod gloss;
 mod gloss_header;

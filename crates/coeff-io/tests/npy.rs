@@ -79,3 +79,55 @@ fn light_is_exported() {
     assert_eq!(json["convention"], sh_math::CONVENTION);
     assert_eq!(json["coefficients"][1], serde_json::json!([0.5, 0.25, 0.125]));
 }
+
+/// Rows of gloss and of texels, and bounces as mean and vectors by the words of docs/format.md.
+#[test]
+fn gloss_and_texels_are_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut prt = sample();
+    let gloss = prt.gloss.as_mut().unwrap();
+    let vertices = gloss.vertices.as_mut().unwrap();
+    let columns = vertices.arriving.bounces[0].columns;
+    let values: Vec<f32> = (0..2 * 3 * columns).map(|k| (k % 13) as f32 / 8.0 - 0.5).collect();
+    let book = coeff_io::Codebook::new([columns, 2, 2], &values);
+    let table = coeff_io::Table::clustered(&book, &[1, 0, 1], &[0.5, -1.0, 0.25, 2.0, 0.0, 1.0]);
+    vertices.arriving.bounces[0] = table.clone();
+    prt.codebooks.bounce = Some(book.clone());
+    export::npy(&prt, folder.path()).unwrap();
+    let file = |name: &str| read_npy(&folder.path().join(name));
+    let (shape, book_values) = file("bounce_book.npy");
+    assert_eq!(shape[..2], [2, 3]);
+    assert_eq!(shape[2..].iter().product::<usize>(), columns as usize);
+    let (shape, weights) = file("gloss_weights.npy");
+    assert_eq!(shape, [3, 2]);
+    let clusters = read_indices(&folder.path().join("gloss_clusters.npy"));
+    assert_eq!(clusters, [1, 0, 1]);
+    let expected = table.decode(Some(&book));
+    let n = columns as usize;
+    for row in 0..3 {
+        let vector = |k: usize, c: usize| book_values[(clusters[row] as usize * 3 + k) * n + c];
+        for c in 0..n {
+            let found = vector(0, c) + weights[2 * row] * vector(1, c) + weights[2 * row + 1] * vector(2, c);
+            assert!((found - expected[row * n + c]).abs() < 1e-5, "row {row}, number {c}");
+        }
+    }
+    let visibility = &prt.gloss.as_ref().unwrap().vertices.as_ref().unwrap().arriving.visibility;
+    assert_eq!(file("gloss_visibility.npy").1, visibility.decode(prt.codebooks.visibility.as_ref()));
+    let level = &prt.transfer_textures.as_ref().unwrap().sheets[0].levels[0];
+    assert_eq!(read_indices(&folder.path().join("sheet_0_0_places.npy")), level.places);
+    let (shape, transfer) = file("sheet_0_0_transfer.npy");
+    assert_eq!(shape[0], level.places.len());
+    assert_eq!(transfer, level.diffuse.decode(prt.codebooks.diffuse.as_ref()));
+    assert_eq!(read_indices(&folder.path().join("gloss_vertices.npy")).len(), 3);
+    let json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("sheets.json")).unwrap()).unwrap();
+    assert_eq!(json["sheets"][0][0], serde_json::json!([level.width, level.height]));
+}
+
+/// The numbers of a `.npy` file of little-endian u32.
+fn read_indices(path: &Path) -> Vec<u32> {
+    let bytes = std::fs::read(path).unwrap();
+    let start = 10 + u16::from_le_bytes([bytes[8], bytes[9]]) as usize;
+    assert!(std::str::from_utf8(&bytes[10..start]).unwrap().contains("'descr': '<u4'"));
+    bytes[start..].chunks_exact(4).map(|b| u32::from_le_bytes(b.try_into().unwrap())).collect()
+}

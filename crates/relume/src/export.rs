@@ -16,8 +16,9 @@ Examples:
   relume export atrium.prt --format json -o text/
 
 npy writes positions.npy [R,3], normals.npy [R,3] and transfer.npy [R, n*n, C]. Where C is 3, transfer times light is
-outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times that. Where there are light maps,
-uv1.npy [R,2] says where vertices lie in them, and triangles.npy [T,3] which vertices belong together.
+outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times that. Where there are light maps
+or transfer textures, uv1.npy [R,2] says where vertices lie in them, and triangles.npy [T,3] which vertices belong together.
+Gloss and transfer textures follow as arrays of rows: gloss_*.npy, sheet_S_L_*.npy, bounce_book.npy and sheets.json (docs/format.md).
 
 ktx2 and dds write light maps as 2-D arrays (sheet_0 ..., one layer per function and coefficient of the light, blocks and
 floating numbers as they are held, eight bits as halves) with maps.json, and a volume as nine 3-D textures of RGBA halves
@@ -46,7 +47,7 @@ pub(crate) struct Options {
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum Format {
-    /// Arrays of NumPy: the transfer of the vertices.
+    /// Arrays of NumPy: the transfer of vertices and texels, and gloss.
     Npy,
     /// Textures of Khronos: light maps and irradiance volumes.
     Ktx2,

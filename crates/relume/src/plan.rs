@@ -93,12 +93,13 @@ fn effect_seconds(price: &Price, effect: Effect) -> f64 {
     match effect {
         Effect::Visibility => price.visibility,
         Effect::Interreflection => price.interreflection,
+        Effect::Glossy => price.gloss,
         _ => 0.0,
     }
 }
 
 fn together(price: &Price) -> f64 {
-    price.preparation + price.visibility + price.interreflection
+    price.preparation + price.visibility + price.interreflection + price.gloss
 }
 
 fn as_json(scene: &Scene, settings: &Settings, price: &Price, light: Option<&LightFacts>) -> String {
@@ -111,7 +112,7 @@ fn as_json(scene: &Scene, settings: &Settings, price: &Price, light: Option<&Lig
     }
     let seconds = json!({
         "preparation": price.preparation, "visibility": price.visibility, "interreflection": price.interreflection,
-        "together": together(price), "receivers_tried": price.tried,
+        "gloss": price.gloss,        "together": together(price), "receivers_tried": price.tried,
     });
     let value = json!({
         "scene": scene.name, "settings": settings, "plan": plan, "seconds": seconds, "light": light.map(LightFacts::json),

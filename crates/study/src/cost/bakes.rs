@@ -102,7 +102,7 @@ impl<'a> Bakes<'a> {
         let rays =
             |effect: Effect| price.plan.rows.iter().filter(move |row| row.effect == effect).map(|row| row.rays as f64);
         Ok(Effort {
-            seconds: self.split + price.preparation + price.visibility + price.interreflection,
+            seconds: self.split + price.preparation + price.visibility + price.interreflection + price.gloss,
             rays: rays(Effect::Visibility).chain(rays(Effect::Interreflection)).sum(),
         })
     }
