@@ -118,7 +118,7 @@ impl Draw<'_> {
     /// Figures 7 and 8: exponents of Phong in columns, lights in rows; below each row that of the path tracer.
     fn exponents(&self) -> Result<(), Failure> {
         let scene = builtin("paper-heads")?;
-        let recipe = Recipe { bounces: 0, rays: 256, refine: Refine::Off, ..Recipe::standard() };
+        let recipe = Recipe { bounces: 0, rays: 256, bent: false, ..Recipe::standard() };
         let prt = baked(&scene, &recipe, None);
         let mut rows = Vec::new();
         for name in ["studio", "sky"] {

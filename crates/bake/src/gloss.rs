@@ -3,6 +3,7 @@
 //! Receivers of gloss keep the visibility of their hemisphere, without a cosine, and what the surfaces that block the rest send: for every
 //! coefficient of the light, or under one light as the paper has it.
 
+mod direct;
 mod fixed;
 mod levels;
 mod row;
@@ -21,6 +22,7 @@ use crate::plan::simulates;
 use crate::progress::Stage;
 use crate::receivers::{NONE, Receiver};
 use coeff_io::{Bounced, Effect, GlossRecord, Prt};
+use direct::Direct;
 use fixed::FixedBounces;
 use row::{Bouncing, Layout, RowMaker};
 pub use settings::{Compression, TextureSettings};
@@ -75,6 +77,7 @@ impl Job<'_> {
         let mut record = GlossRecord::default();
         record.rays[0] += self.done.gatherer.mirrors.map_or(0, |mirrors| mirrors.rays);
         let (fixed, sketch);
+        let mut bounced_share = 1.0;
         let bouncing = match self.extras.light.as_ref().filter(|_| self.bounces()) {
             Some(light) => {
                 fixed = self.follow(&light.coefficients)?;
@@ -83,7 +86,7 @@ impl Job<'_> {
             None if !self.bounces() => Bouncing::None,
             None if whole.long() <= SHORT || self.extras.compression.bounces <= 0.0 => Bouncing::Whole,
             None => {
-                sketch = self.sketch(&whole, &plans, &vertices)?;
+                (sketch, bounced_share) = self.sketch(&whole, &plans, &vertices)?;
                 Bouncing::Sketched(&sketch)
             }
         };
@@ -103,7 +106,7 @@ impl Job<'_> {
         self.done.monitor.check()?;
         let bounced = self.bounced(&maker);
         let sketched = if lost[1] > 0.0 { (lost[0] / lost[1]).sqrt() as f32 } else { 0.0 };
-        let found = tables::Found { plans, baked, vertices, rows, bounced, sketched };
+        let found = tables::Found { plans, baked, vertices, rows, bounced, sketched, bounced_share };
         tables::write(self, &maker, found, record, prt);
         Ok(())
     }
@@ -195,8 +198,8 @@ impl Job<'_> {
         Ok(found.into_iter().flat_map(|(row, _, _)| row).collect())
     }
 
-    /// Learns what rows of bounces have in common from receivers spread evenly over all.
-    fn sketch(&self, whole: &RowMaker<'_>, plans: &[SheetPlan], vertices: &Vertices) -> Result<Sketch, Error> {
+    /// Learns what rows of bounces have in common from receivers spread evenly over all; and what share of all that arrives, root mean square, they are.
+    fn sketch(&self, whole: &RowMaker<'_>, plans: &[SheetPlan], vertices: &Vertices) -> Result<(Sketch, f32), Error> {
         let shines = shining(self.done.scene);
         let mut points = vertices.points(self.done);
         let mut seeds: Vec<u32> = vertices.ids.clone();
@@ -212,9 +215,18 @@ impl Job<'_> {
         let count = points.len().min(SAMPLE);
         let pick = |k: usize| (2 * k + 1) * points.len() / (2 * count);
         let sample: Vec<Receiver> = (0..count).map(|k| points[pick(k)]).collect();
-        let keep = |_: usize, arrival: Arrival| arrival.bounced[..whole.long()].to_vec();
-        let rows = arrive_as(self.done, self.arrivals, (&sample, Stage::Gloss), &|k| seeds[pick(k)], &keep)?.concat();
-        Ok(Sketch::learn(&rows, whole.long(), 0.5 * self.extras.compression.bounces))
+        let direct = Direct::new(self.gloss, self.light);
+        let visible = self.gloss.coefficients();
+        let keep = |_: usize, arrival: Arrival| {
+            (arrival.bounced[..whole.long()].to_vec(), direct.energy(&arrival.visibility[..visible]))
+        };
+        let found = arrive_as(self.done, self.arrivals, (&sample, Stage::Gloss), &|k| seeds[pick(k)], &keep)?;
+        let straight = whole.channels as f64 * found.iter().map(|(_, energy)| energy).sum::<f64>();
+        let rows: Vec<f32> = found.into_iter().flat_map(|(row, _)| row).collect();
+        let bounced: f64 = rows.iter().map(|x| f64::from(*x) * f64::from(*x)).sum();
+        let share = if bounced > 0.0 { (bounced / (bounced + straight)).sqrt() as f32 } else { 1.0 };
+        // Of the bounces alone more may be lost, the less they are.
+        Ok((Sketch::learn(&rows, whole.long(), 0.5 * self.extras.compression.bounces / share), share))
     }
 
     /// Refuses what does not fit into the memory allowed.

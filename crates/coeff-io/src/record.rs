@@ -130,7 +130,7 @@ pub struct GlossRecord {
     pub rays: [u64; 2],
     /// Estimated error at texels, against that of an open point: median, 95th percentile, worst.
     pub error: [f32; 3],
-    /// Relative error that compression added, root mean square over receivers: diffuse transfer, visibility, bounces.
+    /// Relative error that compression added, root mean square over receivers: diffuse transfer, visibility, and bounces against all that arrives.
     pub compression: [f32; 3],
     /// Bytes that the same would take as f32 without compression, and that it takes.
     pub bytes: [u64; 2],

@@ -14,7 +14,7 @@ pub(crate) struct GlossOptions {
     /// Puts rows of transfer and visibility into clusters (clustered PCA), with this relative error at most; none keeps them as they are.
     #[arg(long, value_name = "E", value_parser = share)]
     pub(crate) compress: Option<f32>,
-    /// Relative error allowed to the clusters of glossy bounces that can be relit; 0 keeps them whole.
+    /// Error allowed to the clusters of glossy bounces that can be relit, relative to all that is mirrored; 0 keeps them whole.
     #[arg(long, value_name = "E", default_value_t = Compression::default().bounces, value_parser = share_or_none)]
     pub(crate) bounce_error: f32,
 }

@@ -22,13 +22,13 @@ pub struct TextureSettings {
 pub struct Compression {
     /// Relative error allowed to diffuse transfer and visibility; none keeps them as they are.
     pub rows: Option<f32>,
-    /// Relative error allowed to bounces that can be relit, whose rows are long; 0 keeps them whole, in halves. It is a wish: no more than 320
-    /// vectors are common to all, and the noise of the rays counts as well.
+    /// Error allowed to bounces that can be relit, whose rows are long, relative to all that arrives at surfaces that shine; 0 keeps them whole, in
+    /// halves. It is a wish: no more than 320 vectors are common to all, and the noise of the rays counts as well.
     pub bounces: f32,
 }
 
 impl Default for Compression {
     fn default() -> Self {
-        Self { rows: None, bounces: 0.1 }
+        Self { rows: None, bounces: 0.02 }
     }
 }

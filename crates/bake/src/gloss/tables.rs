@@ -25,6 +25,8 @@ pub(super) struct Found {
     pub(super) bounced: Option<Bounced>,
     /// Relative error of the sketch of bounces, over all receivers.
     pub(super) sketched: f32,
+    /// Share of bounces of all that arrives, root mean square.
+    pub(super) bounced_share: f32,
 }
 
 /// Rows of several tables that share a codebook.
@@ -70,7 +72,11 @@ pub(super) fn write(job: &Job<'_>, maker: &RowMaker<'_>, found: Found, mut recor
     let mut diffuse = diffuse.coded(aim);
     let mut visibility = visibility.coded(aim);
     let mut bounces = match &maker.bouncing {
-        Bouncing::Sketched(sketch) => bounces.coded_sketched(sketch, job.extras.compression.bounces, found.sketched),
+        Bouncing::Sketched(sketch) => {
+            let share = found.bounced_share;
+            let coded = bounces.coded_sketched(sketch, job.extras.compression.bounces / share, found.sketched);
+            Coded { error: share * coded.error, ..coded }
+        }
         _ => bounces.coded(None),
     };
     record.compression = [diffuse.error, visibility.error, bounces.error];
