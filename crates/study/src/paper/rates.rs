@@ -134,7 +134,8 @@ fn figure(per_second: f64) -> String {
     match per_second {
         r if r >= 100.0 => format!("{r:.0}"),
         r if r >= 10.0 => format!("{r:.1}"),
-        r => format!("{r:.2}"),
+        r if r >= 1.0 => format!("{r:.2}"),
+        r => format!("{r:.3}"),
     }
 }
 
