@@ -8,6 +8,9 @@ use probe_io::reflection::Reflection;
 use rayon::prelude::*;
 use sh_math::{Bands, Rgb, lobe};
 
+/// How fast the bands take over from the prefiltered light as a lobe closes: from a quarter on they count in full.
+const SHARPNESS: f32 = 4.0;
+
 /// The lobe of a frame, and the light that its tail is taken against.
 #[derive(Debug)]
 pub(crate) struct Gloss {
@@ -108,10 +111,9 @@ impl Gloss {
         rgb.extend((raw.w / aimed.energy).clamp(0.0, 1.0))
     }
 
-    /// What the lobe holds beyond the bands.
-    fn tail(&self, aimed: &Aimed, reflected: Vec3) -> Vec3 {
-        let held = aimed.weights.iter().zip(&self.light).map(|(&a, &l)| Vec3::from(l) * a).sum::<Vec3>();
-        reflected - held
+    /// What the bands hold of the light that nothing blocks.
+    fn held(&self, aimed: &Aimed) -> Vec3 {
+        aimed.weights.iter().zip(&self.light).map(|(&a, &l)| Vec3::from(l) * a).sum()
     }
 
     /// The roughness that counts.
@@ -163,9 +165,13 @@ impl Gloss {
             Arrived::Texels(sheet, taps) => Self::received(&aimed, sheet.arriving(taps, &aimed.weights)),
             Arrived::Interpolated(received) => received,
         };
-        let tail =
-            if self.view.tail { self.tail(&aimed, light.along(ray.mirrored, ray.roughness)) } else { Vec3::ZERO };
-        (received.truncate() + tail * received.w).max(Vec3::ZERO)
+        if !self.view.tail {
+            return received.truncate();
+        }
+        let (open, reflected) = (received.w, light.along(ray.mirrored, ray.roughness));
+        let kept = (SHARPNESS * (1.0 - open)).min(1.0);
+        let mirrored = kept * received.truncate() + open * (reflected - kept * self.held(&aimed));
+        mirrored.max(Vec3::ZERO)
     }
 }
 

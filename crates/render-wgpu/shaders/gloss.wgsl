@@ -41,14 +41,20 @@ fn mirrored_sums(sums: vec4<f32>, energy: f32) -> vec4<f32> {
     return vec4<f32>(max(sums.rgb, vec3<f32>(0.0)) / energy, saturate(sums.a / energy));
 }
 
-// What the lobe holds beyond the bands: the prefiltered light without its first bands.
-fn lobe_tail(lobe: Lobe, mirrored: vec3<f32>, roughness: f32) -> vec3<f32> {
+// What is mirrored, of the sums of a lobe: where it is all open that is the prefiltered light, of which the bands know less; the more it closes the more
+// the bands count, and of the prefiltered light what they lack.
+fn mirrored_light(sums: vec4<f32>, lobe: Lobe, mirrored: vec3<f32>, roughness: f32) -> vec3<f32> {
+    if gloss_frame.tail == 0.0 {
+        return sums.rgb;
+    }
     var values = lobe.values;
     var held = vec3<f32>(0.0);
     for (var k = 0u; k < COUNT; k++) {
         held += values[k] * gloss_light[k].rgb;
     }
-    return gloss_frame.tail * (reflected(normalize(view.light_from_world * mirrored), roughness) - held);
+    let whole = reflected(normalize(view.light_from_world * mirrored), roughness);
+    let part = min(4.0 * (1.0 - sums.a), 1.0);
+    return max(part * sums.rgb + sums.a * (whole - part * held), vec3<f32>(0.0));
 }
 
 fn gloss_roughness(own: f32) -> f32 {

@@ -20,6 +20,6 @@ fn specular_light(point: Point, normal: vec3<f32>, plain: vec3<f32>, to_eye: vec
     let mirrored = normalize(2.0 * cosine * normal - to_eye);
     let lobe = lobe_about(mirrored, plain, own.roughness);
     let sums = mirrored_sums(arriving(lobe, at.uv.zw, detail()), lobe.energy);
-    let light = max(sums.rgb + sums.a * lobe_tail(lobe, mirrored, own.roughness), vec3<f32>(0.0));
+    let light = mirrored_light(sums, lobe, mirrored, own.roughness);
     return light * returned(own, cosine);
 }

@@ -69,7 +69,7 @@ fn draw_glossy(at: Glossy) -> @location(0) vec4<f32> {
     let cosine = dot(normal, to_eye);
     let mirrored = normalize(2.0 * cosine * normal - to_eye);
     let lobe = lobe_about(mirrored, unit_or(at.normal, geometric), own.roughness);
-    let light = max(at.gloss.rgb + at.gloss.a * lobe_tail(lobe, mirrored, own.roughness), vec3<f32>(0.0));
+    let light = mirrored_light(at.gloss, lobe, mirrored, own.roughness);
     return composite(point, diffuse_light(at.lit.rgb, at.uv), light * returned(own, cosine), glow(at.uv));
 }
 
