@@ -16,7 +16,7 @@ pub(crate) struct GlossOptions {
     #[arg(long, value_enum, default_value_t = LobeName::Ggx)]
     lobe: LobeName,
     /// One perceptual roughness for all that shines, 0 to 1.
-    #[arg(long, value_name = "R", conflicts_with = "exponent")]
+    #[arg(long, value_name = "R", conflicts_with = "exponent", value_parser = crate::reference::roughness)]
     roughness: Option<f32>,
     /// The same as an exponent of Phong.
     #[arg(long, value_name = "S", value_parser = exponent)]

@@ -118,7 +118,7 @@ impl Options {
     }
 }
 
-fn roughness(text: &str) -> Result<f32, String> {
+pub(crate) fn roughness(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|value| (0.0..=1.0).contains(value)).ok_or("give a roughness from 0 to 1".into())
 }
 

@@ -27,7 +27,8 @@ pub(crate) struct BakeOptions {
     #[arg(long, value_name = "auto|off|METRES", default_value = "auto", value_parser = refine)]
     refine: Refine,
     /// Effects that may be simulated: auto for those that the scene calls for, all, none, or a list of visibility,
-    /// interreflection, color, masks, specular, glossy, normal-maps, emission, transmission.
+    /// interreflection, color, masks, specular, glossy, normal-maps, emission, transmission. With glossy come visibility and specular, without
+    /// which there is none.
     #[arg(long, value_name = "auto|all|none|LIST", default_value = "auto", value_parser = effects)]
     effects: Effects,
     /// Where coefficients are stored.
@@ -157,8 +158,18 @@ fn effects(text: &str) -> Result<Effects, String> {
         "auto" => Ok(Effects::Auto),
         "all" => Ok(Effects::All),
         "none" => Ok(Effects::Only(Vec::new())),
-        list => list.split(',').map(effect).collect::<Result<_, _>>().map(Effects::Only),
+        list => list.split(',').map(effect).collect::<Result<_, _>>().map(|list| Effects::Only(with_needed(list))),
     }
+}
+
+/// Adds what glossy builds on.
+fn with_needed(mut list: Vec<Effect>) -> Vec<Effect> {
+    if list.contains(&Effect::Glossy) {
+        let missing = [Effect::Visibility, Effect::Specular].into_iter().filter(|effect| !list.contains(effect));
+        let missing: Vec<Effect> = missing.collect();
+        list.extend(missing);
+    }
+    list
 }
 
 fn effect(name: &str) -> Result<Effect, String> {
@@ -219,6 +230,8 @@ mod tests {
         assert_eq!(bounces("2"), Ok(Bounces::Fixed(2)));
         assert!(bounces("many").is_err());
         assert_eq!(effects("color,masks"), Ok(Effects::Only(vec![Effect::Color, Effect::Masks])));
+        let glossy = vec![Effect::Glossy, Effect::Specular, Effect::Visibility];
+        assert_eq!(effects("glossy,specular"), Ok(Effects::Only(glossy)), "what gloss needs comes with it");
         assert!(effects("colour").is_err() && effects("").is_err() && effects("motion").is_err());
         assert_eq!(bands("7"), Ok(BandsOption { count: 7, choice: BandChoice::Exactly }));
         assert_eq!(bands("auto"), Ok(BandsOption { count: 5, choice: BandChoice::Needed }));
