@@ -7,12 +7,13 @@ use crate::directions::DirectionBank;
 use crate::extras::{Done, Extras, FixedLight};
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer};
+use crate::gloss::fixed;
 use crate::mirror::Mirrors;
 use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::{Progress, Stage};
 use crate::receivers::Receivers;
-use crate::refine::refine_watched;
+use crate::refine::refined;
 use crate::repair::{Finding, Repair, emerge};
 use crate::wanted::Wanted;
 use crate::{Error, settings};
@@ -85,6 +86,7 @@ pub(crate) fn bake_then<T>(
         let receivers = prepared.receivers.list.len();
         crate::maps::check(maps, scene, &prepared.plan, receivers, settings, extras.light.is_some())?;
     }
+    extras.check_textures(scene)?;
     extras.check_light(prepared.plan.bands)?;
     let Prepared { world, receivers, plan, traced } = prepared;
     let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
@@ -114,18 +116,6 @@ pub(crate) fn bake_then<T>(
     let (mut prt, more) = run.finish(scene, extras, then)?;
     prt.achieved.effects = account(scene, &prt, traced.len() as u64);
     Ok((prt, more))
-}
-
-/// The scene as it is baked; an empty one is refused.
-pub(crate) fn refined<'a>(
-    scene: &'a Scene,
-    settings: &Settings,
-    progress: ProgressFn<'_>,
-) -> Result<Cow<'a, Scene>, Error> {
-    if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
-        return Err(Error::EmptyScene { scene: scene.name.clone() });
-    }
-    refine_watched(scene, settings, progress)
 }
 
 /// A bake under way.
@@ -230,11 +220,17 @@ impl<'a> Run<'a> {
             (Bounces::Fixed(1..), false) if self.gatherer.hits => Cow::Owned(transfer.without(&self.last)),
             _ => Cow::Borrowed(&transfer),
         };
-        let more = then(&self.done(scene, &transfer, &sent, extras), &mut prt)?;
+        let more = then(&self.done(scene, [&transfer, &sent], &repair, extras), &mut prt)?;
         Ok((prt, more))
     }
 
-    fn done<'b>(&'b self, scene: &'b Scene, transfer: &'b Field, sent: &'b Field, extras: &'b Extras) -> Done<'b> {
+    fn done<'b>(
+        &'b self,
+        scene: &'b Scene,
+        [transfer, sent]: [&'b Field; 2],
+        repair: &'b Repair,
+        extras: &'b Extras,
+    ) -> Done<'b> {
         Done {
             scene,
             gatherer: &self.gatherer,
@@ -246,6 +242,7 @@ impl<'a> Run<'a> {
             light: extras.light.as_ref(),
             direct: self.direct.as_ref(),
             radiance: &self.radiance,
+            repair,
             monitor: &self.monitor,
         }
     }
@@ -299,6 +296,9 @@ impl<'a> Run<'a> {
                 let glints = glints.get_or_insert_with(|| Field::zeros(0, coefficients, channels));
                 glints.grow((id as usize + 1).max(glints.len()));
                 glints.set(id, &seen.glint);
+            } else if let Some(glints) = glints.as_mut().filter(|glints| (id as usize) < glints.len()) {
+                // It looked before, from where it was moved away.
+                glints.row_mut(id).fill(0.0);
             }
             if !finding.is_inside() {
                 wanted.note(id, seen);
@@ -348,7 +348,10 @@ impl<'a> Run<'a> {
             self.achieved.bounces = n;
             self.achieved.bounce_changes.push(change as f32);
             self.last = next;
-            self.note_radiance();
+            // What the last bounce leaves behind nobody receives.
+            if self.settings.bounces != Bounces::Fixed(n) {
+                self.note_radiance();
+            }
             if self.settings.bounces == Bounces::Auto
                 && still_to_come(change, before) <= f64::from(tolerance(self.settings.quality))
             {
@@ -361,9 +364,9 @@ impl<'a> Run<'a> {
 
     /// Keeps the radiance of the last bounce under the light that goes into gloss.
     fn note_radiance(&mut self) {
-        if let Some(light) = self.light {
+        if let Some(light) = self.light.filter(|_| self.gatherer.mirrors.is_some()) {
             let light = &light.coefficients[..self.last.coefficients];
-            self.radiance.push(radiance(&self.last, self.receivers.list.len(), light));
+            fixed::add_table(&mut self.radiance, radiance(&self.last, self.receivers.list.len(), light));
         }
     }
 

@@ -34,7 +34,7 @@ pub struct Compressed {
     pub clusters: Vec<u16>,
     /// `[row][vector]`.
     pub weights: Vec<f32>,
-    /// The error reached, as the file holds it.
+    /// The error reached; of rows of a sketch without the rounding of the file, which is a twentieth of a per cent.
     pub error: f32,
 }
 

@@ -6,9 +6,11 @@ use crate::domain::{Domain, Judge};
 use crate::field::Field;
 use crate::gather::Gatherer;
 use crate::gloss::{Compression, TextureSettings};
+use crate::maps::check_sheets;
 use crate::passes::Monitor;
 use crate::plan::allowed;
 use crate::receivers::Receivers;
+use crate::repair::Repair;
 use crate::{Error, MapSettings, VolumeSettings};
 use coeff_io::{Bounces, Effect, MapLight, Plan, Prt, Settings};
 use scene::Scene;
@@ -33,6 +35,16 @@ pub struct Extras {
 impl Extras {
     pub(crate) fn is_empty(&self) -> bool {
         self.maps.is_none() && self.volume.is_none() && self.textures.is_none()
+    }
+
+    /// Whether transfer textures can be, beside what else is asked for.
+    pub(crate) fn check_textures(&self, scene: &Scene) -> Result<(), Error> {
+        let Some(textures) = &self.textures else { return Ok(()) };
+        if self.maps.is_some() {
+            let value = "light maps and transfer textures".to_owned();
+            return Err(Error::Setting { setting: "storage", value, allowed: "use one of the two" });
+        }
+        check_sheets(&textures.sheets, textures.dilation, scene)
     }
 
     /// Refuses a light that lacks coefficients or holds what is no number.
@@ -78,6 +90,8 @@ pub(crate) struct Done<'a> {
     pub(crate) direct: Option<&'a Field>,
     /// Where surfaces shine under a fixed light: the radiance of every receiver for albedo 1, per bounce from none on.
     pub(crate) radiance: &'a [Vec<[f32; 3]>],
+    /// Receivers that take the mean of their neighbours.
+    pub(crate) repair: &'a Repair,
     pub(crate) monitor: &'a Monitor<'a>,
 }
 

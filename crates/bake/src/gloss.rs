@@ -4,7 +4,7 @@
 //! coefficient of the light, or under one light as the paper has it.
 
 mod direct;
-mod fixed;
+pub(crate) mod fixed;
 mod levels;
 mod row;
 mod settings;
@@ -29,6 +29,7 @@ pub use settings::{Compression, TextureSettings};
 use sh_math::light_matrix::LightProduct;
 use sh_math::{Bands, Rgb};
 use sheets::SheetPlan;
+use std::collections::BTreeMap;
 
 /// Receivers that a sketch is learned from.
 const SAMPLE: usize = 1024;
@@ -86,6 +87,10 @@ impl Job<'_> {
             None if !self.bounces() => Bouncing::None,
             None if whole.long() <= SHORT || self.extras.compression.bounces <= 0.0 => Bouncing::Whole,
             None => {
+                self.check_sample(
+                    &whole,
+                    vertices.ids.len() + plans.iter().map(|plan| plan.texels.len()).sum::<usize>(),
+                )?;
                 (sketch, bounced_share) = self.sketch(&whole, &plans, &vertices)?;
                 Bouncing::Sketched(&sketch)
             }
@@ -195,7 +200,10 @@ impl Job<'_> {
             record.rays = [record.rays[0] + rays[0], record.rays[1] + rays[1]];
             *lost = [lost[0] + own[0], lost[1] + own[1]];
         }
-        Ok(found.into_iter().flat_map(|(row, _, _)| row).collect())
+        let mut rows: Vec<f32> = found.into_iter().flat_map(|(row, _, _)| row).collect();
+        let row_of: BTreeMap<u32, usize> = vertices.ids.iter().enumerate().map(|(row, &id)| (id, row)).collect();
+        self.done.repair.apply_rows(&mut rows, layout.len(), &|id| row_of.get(&id).copied());
+        Ok(rows)
     }
 
     /// Learns what rows of bounces have in common from receivers spread evenly over all; and what share of all that arrives, root mean square, they are.
@@ -234,13 +242,19 @@ impl Job<'_> {
         let texels: usize = plans.iter().map(|plan| plan.texels.len()).sum();
         let numbers: usize = plans.iter().map(|plan| plan.texels.len() * plan.layout.len()).sum();
         let at_vertices = vertices * maker.layout(false, true).len();
-        // While seams are stitched the rows are there twice, and levels and rings take half as many again.
-        let needed = 4 * (3 * numbers + 2 * at_vertices) as u64;
-        if needed > self.done.settings.memory {
-            let allowed = self.done.settings.memory;
-            return Err(Error::MapMemory { texels: texels + vertices, needed, allowed });
-        }
-        Ok(())
+        // While seams are stitched the rows are there twice, and levels and rings take half as many again; clusters are made of copies.
+        let copies = if self.extras.compression.rows.is_some() { 6 } else { 3 };
+        self.allow(4 * (copies * numbers + 2 * at_vertices) as u64, texels + vertices)
+    }
+
+    /// Refuses where the rows that a sketch is learned from do not fit, beside their copy.
+    fn check_sample(&self, whole: &RowMaker<'_>, receivers: usize) -> Result<(), Error> {
+        self.allow((8 * receivers.min(SAMPLE) * whole.long()) as u64, receivers)
+    }
+
+    fn allow(&self, needed: u64, texels: usize) -> Result<(), Error> {
+        let allowed = self.done.settings.memory;
+        if needed > allowed { Err(Error::MapMemory { texels, needed, allowed }) } else { Ok(()) }
     }
 }
 

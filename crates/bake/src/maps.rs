@@ -31,7 +31,7 @@ use std::collections::BTreeMap;
 /// Texels that a thread takes at a time.
 const CHUNK: usize = 64;
 
-pub(crate) use check::check;
+pub(crate) use check::{check, check_sheets};
 pub use directional::{Directional, DirectionalTexel, directional};
 pub(crate) use join::stitch_all;
 

@@ -1,6 +1,7 @@
 //! What a material can do to light at most, over all its texels and vertex colours: the facts that plans rest on.
 
 use crate::albedo::{Albedo, Colors};
+use glam::Vec4;
 use scene::{AlphaMode, Material, Scene};
 
 /// Perceptual roughness below which a dielectric shows a reflection that is worth drawing.
@@ -56,7 +57,7 @@ impl Facts {
             masked: material.is_masked(),
             holes: hole_share(scene, index),
             shines: metallic > METALLIC || material.roughness * gloss.smallest.y < SHINY,
-            tinted: metallic > METALLIC && is_colored(scene, material),
+            tinted: metallic > METALLIC && is_colored(scene, material, index),
             reflectance: DIELECTRIC.max(metallic * color.max_element()).min(1.0),
             bumpy: material.normal_texture.is_some(),
             emission: glow.max_element(),
@@ -120,11 +121,14 @@ fn vertex_alpha(scene: &Scene, index: usize) -> f32 {
 }
 
 /// Whether the base colour may differ between channels.
-fn is_colored(scene: &Scene, material: &Material) -> bool {
-    let [r, g, b, _] = material.base_color.to_array();
+fn is_colored(scene: &Scene, material: &Material, index: usize) -> bool {
+    let differs = |color: &Vec4| color.x != color.y || color.y != color.z;
+    let mut meshes = scene.meshes.iter().filter(|mesh| mesh.material as usize == index);
     let grey = |texel: &[u8; 4]| texel[0] == texel[1] && texel[1] == texel[2];
     let texels = material.base_color_texture.map(|slot| &scene.textures[slot.texture as usize].rgba);
-    r != g || g != b || texels.is_some_and(|texels| !texels.iter().all(grey))
+    differs(&material.base_color)
+        || texels.is_some_and(|texels| !texels.iter().all(grey))
+        || meshes.any(|mesh| mesh.colors.iter().any(differs))
 }
 
 fn shown(scene: &Scene, index: usize) -> bool {

@@ -1,12 +1,13 @@
 //! What a bake will take: some receivers are baked for trial, on a clock that the caller brings.
 
-use crate::bake::{NEAR_WORTH, refined};
+use crate::bake::NEAR_WORTH;
 use crate::directions::DirectionBank;
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer, Worker};
 use crate::passes::{Chunk, Monitor, bounce_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::receivers::morton_order;
+use crate::refine::refined;
 use crate::{Error, Extras, settings};
 use coeff_io::{Effect, Plan, Settings};
 use rayon::prelude::*;

@@ -34,6 +34,18 @@ pub fn refine<'a>(scene: &'a Scene, settings: &Settings) -> Result<Cow<'a, Scene
     refine_watched(scene, settings, &|_| ControlFlow::Continue(()))
 }
 
+/// The scene as it is baked; an empty one is refused.
+pub(crate) fn refined<'a>(
+    scene: &'a Scene,
+    settings: &Settings,
+    progress: ProgressFn<'_>,
+) -> Result<Cow<'a, Scene>, Error> {
+    if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
+        return Err(Error::EmptyScene { scene: scene.name.clone() });
+    }
+    refine_watched(scene, settings, progress)
+}
+
 /// [`refine`] that reports progress and can be cancelled.
 ///
 /// # Errors

@@ -125,6 +125,21 @@ impl Repair {
         }
     }
 
+    /// Replaces the broken ones of rows of so many numbers, which receivers have as `row_of` says.
+    pub(crate) fn apply_rows(&self, rows: &mut [f32], len: usize, row_of: &dyn Fn(u32) -> Option<usize>) {
+        for (target, sources) in &self.targets {
+            let Some(target) = row_of(*target) else { continue };
+            let sources: Vec<usize> = sources.iter().filter_map(|&source| row_of(source)).collect();
+            if sources.is_empty() {
+                continue;
+            }
+            for k in 0..len {
+                let sum: f32 = sources.iter().map(|source| rows[source * len + k]).sum();
+                rows[target * len + k] = sum / sources.len() as f32;
+            }
+        }
+    }
+
     /// Replaces the broken values of one number per receiver.
     pub(crate) fn apply_scalar(&self, values: &mut [f32]) {
         for (target, sources) in &self.targets {

@@ -1,10 +1,10 @@
 //! Direct transfer of a few receivers alone: what a study of accuracy needs of a scene too large to bake again and again.
 
-use crate::bake::refined;
 use crate::directions::DirectionBank;
 use crate::gather::{Gatherer, Worker};
 use crate::plan::prepare;
 use crate::receivers::morton_order;
+use crate::refine::refined;
 use crate::{Error, Extras, settings};
 use coeff_io::Settings;
 use rayon::prelude::*;

@@ -1,9 +1,10 @@
 //! Whether gloss is better kept at vertices or at texels: by how finely the scene is cut, against the error asked for.
 
-use crate::bake::{plan_with, refined};
+use crate::bake::plan_with;
 use crate::extras::Extras;
 use crate::mirror::shining;
 use crate::plan::simulates;
+use crate::refine::refined;
 use crate::{Error, settings};
 use coeff_io::{Effect, Refine, Settings};
 use scene::Scene;

@@ -311,3 +311,85 @@ fn threads_change_nothing() {
     };
     assert!(on(1) == on(2) && on(2) == on(3));
 }
+
+/// Metal that has its colour from its vertices sends on each channel by itself.
+#[test]
+fn vertex_colors_tint_what_is_mirrored() {
+    let channels = |tint: Vec3| {
+        let (mut scene, mesh) = with_patch(grey("cornell-box", 0.5), Vec3::new(0.0, 0.1, 0.0), 0.05);
+        scene.meshes[mesh].colors = vec![tint.extend(1.0); 4];
+        baked(&scene, &with_gloss(fixed(2, Sampler::OwenSobol, 16, 1)), &Extras::default()).plan.channels
+    };
+    assert_eq!(channels(Vec3::new(1.0, 0.8, 0.3)), 3);
+    assert_eq!(channels(Vec3::splat(0.5)), 1, "can fail: grey needs one");
+}
+
+/// A sheet of metal that runs deep into a closed block: what is buried shows what its neighbours see, not the dark inside.
+#[test]
+fn buried_vertices_are_mended() {
+    let mut scene = Scene::default();
+    let side = 9;
+    let at = |k: usize| Vec3::new((k % side) as f32 / 4.0 - 1.0, 0.0, 1.0 - (k / side) as f32 / 4.0);
+    let quad = |k: usize| [k, k + 1, k + side + 1, k + side].map(|v| v as u32);
+    let quads = (0..side * (side - 1)).filter(|k| k % side + 1 < side).map(quad);
+    scene.materials = vec![metal(), Material::default()];
+    scene.meshes.push(Mesh {
+        name: "sheet".into(),
+        positions: (0..side * side).map(at).collect(),
+        normals: vec![Vec3::Y; side * side],
+        triangles: quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+        ..Mesh::default()
+    });
+    scene.meshes.push(block(Vec3::new(0.1, -0.5, -1.5), Vec3::new(1.5, 0.5, 1.5)));
+    let prt = baked(&scene, &with_gloss(fixed(3, Sampler::OwenSobol, 128, 1)), &Extras::default());
+    let vertices = prt.gloss.as_ref().unwrap().vertices.as_ref().unwrap();
+    let seen = vertices.arriving.visibility.decode(None);
+    let open = std::f32::consts::PI.sqrt();
+    let least = seen.chunks_exact(9).take(side * side).map(|row| row[0] / open).fold(1.0, f32::min);
+    assert!(prt.achieved.repairs.inside > 20, "{:?}", prt.achieved.repairs);
+    assert!(least > 0.3, "{least}");
+}
+
+/// A closed box with its normals outwards.
+fn block(low: Vec3, high: Vec3) -> Mesh {
+    let mut mesh = Mesh { name: "block".into(), material: 1, ..Mesh::default() };
+    for axis in 0..3 {
+        for side in [0.0, 1.0] {
+            let first = mesh.positions.len() as u32;
+            for (u, v) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+                let mut share = [0.0; 3];
+                (share[axis], share[(axis + 1) % 3], share[(axis + 2) % 3]) = (side, u, v);
+                mesh.positions.push(low + (high - low) * Vec3::from(share));
+                let mut normal = [0.0; 3];
+                normal[axis] = 2.0 * side - 1.0;
+                mesh.normals.push(normal.into());
+            }
+            let corners = if side > 0.0 { [[0, 1, 2], [0, 2, 3]] } else { [[0, 2, 1], [0, 3, 2]] };
+            mesh.triangles.extend(corners.map(|triangle| triangle.map(|v: u32| v + first)));
+        }
+    }
+    mesh
+}
+
+/// What cannot be is refused before anything is baked.
+#[test]
+fn sheets_that_cannot_be_are_refused() {
+    let (scene, mesh) = with_patch(scene::builtin("bowl").unwrap(), Vec3::new(0.1, -0.8, 0.0), 0.05);
+    let settings = with_gloss(fixed(2, Sampler::OwenSobol, 16, 0));
+    let bake = |edit: &dyn Fn(&mut TextureSettings)| {
+        let mut textures = texture(vec![mesh], 16);
+        edit(&mut textures);
+        let extras = Extras { textures: Some(textures), ..Extras::default() };
+        bake::bake_with(&scene, &settings, &extras, &|_| ControlFlow::Continue(()))
+    };
+    assert!(bake(&|_| {}).is_ok());
+    let edits: [&dyn Fn(&mut TextureSettings); 4] = [
+        &|textures| textures.sheets[0].meshes.push(99),
+        &|textures| textures.sheets.push(textures.sheets[0].clone()),
+        &|textures| textures.sheets[0].width = 40_000,
+        &|textures| textures.dilation = 1000,
+    ];
+    for edit in edits {
+        assert!(matches!(bake(edit), Err(bake::Error::Setting { .. })));
+    }
+}

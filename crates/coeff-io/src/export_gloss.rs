@@ -44,7 +44,10 @@ impl Out<'_> {
     }
 
     fn book(&self) -> Result<(), Error> {
-        let Some(book) = &self.prt.codebooks.bounce else { return Ok(()) };
+        let numbers = self.bounce_shape().into_iter().product::<u64>();
+        let Some(book) = self.prt.codebooks.bounce.as_ref().filter(|book| u64::from(book.columns) == numbers) else {
+            return Ok(());
+        };
         let shape = [u64::from(book.clusters), 1 + u64::from(book.rank)];
         let shape: Vec<u64> = shape.into_iter().chain(self.bounce_shape()).collect();
         array(&self.folder.join("bounce_book.npy"), &shape, book.values().into_iter())

@@ -1,6 +1,6 @@
 //! What surfaces that shine need: which directions they see, and what arrives from the surfaces that block the others.
 
-use crate::{Codebook, Material, Prt, Table};
+use crate::{AlphaMode, Codebook, Material, Prt, Table};
 use serde::{Deserialize, Serialize};
 
 /// How receivers on surfaces that shine see their surroundings, for mirrored light.
@@ -108,19 +108,30 @@ impl Prt {
         }
         for texture in &self.textures {
             hasher.update(&texture.width.to_le_bytes());
+            hasher.update(&texture.height.to_le_bytes());
+            hasher.update(&texture.wrap.map(|wrap| wrap as u8));
             hasher.update(bytemuck::cast_slice(&texture.rgba));
         }
+        self.meshes.iter().for_each(|mesh| hasher.update(&mesh.material.to_le_bytes()));
+        self.geometry.colors.iter().flatten().for_each(|x| hasher.update(&x.to_le_bytes()));
         hasher.finalize()
     }
 }
 
 fn add(hasher: &mut crc32fast::Hasher, material: &Material) {
-    let numbers = material.base_color.iter().chain([&material.metallic, &material.roughness, &material.transmission]);
-    numbers.for_each(|x| hasher.update(&x.to_le_bytes()));
+    let cutoff = match material.alpha {
+        AlphaMode::Opaque => -1.0,
+        AlphaMode::Mask(cutoff) => cutoff,
+        AlphaMode::Blend => -2.0,
+    };
+    let own = [material.metallic, material.roughness, material.transmission, material.normal_scale, cutoff];
+    material.base_color.iter().chain(&own).for_each(|x| hasher.update(&x.to_le_bytes()));
     let slots = [&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture];
     for slot in slots {
         let (texture, set) = slot.as_ref().map_or((u32::MAX, 0), |slot| (slot.texture, slot.uv_set));
         hasher.update(&texture.to_le_bytes());
         hasher.update(&[set, u8::from(material.specular)]);
+        let transform = slot.iter().flat_map(|slot| slot.transform.iter().flatten());
+        transform.for_each(|x| hasher.update(&x.to_le_bytes()));
     }
 }

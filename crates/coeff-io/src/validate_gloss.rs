@@ -3,8 +3,11 @@
 use crate::gloss_header::{levels, tables};
 use crate::table::Kind;
 use crate::validate::{Check, LARGEST_SIDE};
-use crate::{Arriving, Bounced, Error, Gloss, Prt, Table, TransferLevel, TransferTextures};
+use crate::{Arriving, Bounced, Codebook, Error, Gloss, Prt, Table, TransferLevel, TransferTextures};
 use sh_math::Bands;
+
+/// Most means and vectors of a codebook that are combinations of shared ones; a bake makes 8,320 at most.
+const MOST_COMBINATIONS: u64 = 1 << 16;
 
 impl Prt {
     /// What is wrong with gloss, transfer textures and codebooks, or does not fit the meshes, in half a sentence; none where all can be drawn.
@@ -27,6 +30,10 @@ impl Check<'_> {
             if let Some(what) = book.fault() {
                 self.require_part(Kind::Codebook, index, 0, format!("codebook {index}: {what}"))?;
             }
+        }
+        self.books(prt)?;
+        if let Some(gloss) = &prt.gloss {
+            self.bounced(gloss)?;
         }
         self.columns(prt)?;
         self.tables(prt)?;
@@ -92,7 +99,20 @@ impl Check<'_> {
         Ok(())
     }
 
-    fn gloss(&self, gloss: &Gloss, prt: &Prt) -> Result<(), Error> {
+    /// What books grow to in memory is bounded: only that of bounces shares vectors, of which few combinations are made.
+    fn books(&self, prt: &Prt) -> Result<(), Error> {
+        let plain = [&prt.codebooks.diffuse, &prt.codebooks.visibility];
+        self.header(plain.into_iter().flatten().all(|book| book.shared == 0), || {
+            "a codebook other than that of bounces shares vectors".into()
+        })?;
+        let made = |book: &Codebook| u64::from(book.clusters) * (1 + u64::from(book.rank));
+        let bounce = prt.codebooks.bounce.as_ref().filter(|book| book.shared > 0);
+        self.header(bounce.is_none_or(|book| made(book) <= MOST_COMBINATIONS), || {
+            format!("more than {MOST_COMBINATIONS} means and vectors are made of shared ones")
+        })
+    }
+
+    fn bounced(&self, gloss: &Gloss) -> Result<(), Error> {
         let sound = match &gloss.bounced {
             Some(Bounced::Relightable { bands, channels }) => {
                 Bands::new(*bands).is_some() && matches!(channels, 1 | 3) && *bands <= 32
@@ -102,7 +122,10 @@ impl Check<'_> {
             }
             None => true,
         };
-        self.header(sound && gloss.bands <= 32, || "the bounces of gloss are of no light that is supported".into())?;
+        self.header(sound && gloss.bands <= 32, || "the bounces of gloss are of no light that is supported".into())
+    }
+
+    fn gloss(&self, gloss: &Gloss, prt: &Prt) -> Result<(), Error> {
         let Some(vertices) = &gloss.vertices else { return Ok(()) };
         self.header(vertices.first_row.len() == prt.meshes.len(), || {
             format!("gloss names rows for {} meshes of {}", vertices.first_row.len(), prt.meshes.len())

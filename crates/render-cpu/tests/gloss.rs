@@ -142,8 +142,8 @@ fn an_open_lobe_mirrors_the_prefiltered_light() {
     let environment = Environment::from_function("lamp", 64, lamp);
     let reflection = Reflection::build(&environment, REFLECTION_LEVELS, REFLECTION_WIDTH);
     let prt = metal_wall(Storage::Texels, 0.375, &belt(0.0, 1.0), None);
-    let mut renderer = Renderer::new(&prt, &environment).expect("a sound scene");
-    let mut error = |tail| {
+    let renderer = Renderer::new(&prt, &environment).expect("a sound scene");
+    let error = |tail| {
         let mut frame = bare(Lobe::Ggx);
         frame.gloss.tail = tail;
         let picture = renderer.draw(&frame).expect("a picture").linear;

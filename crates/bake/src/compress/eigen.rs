@@ -65,8 +65,8 @@ fn tridiagonal(z: &mut [Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     for i in 0..n {
         if diagonal[i] != 0.0 {
             let mut factors = vec![0.0; i];
-            for k in 0..i {
-                add(&mut factors, z[i][k], &z[k]);
+            for (row, &factor) in z.iter().zip(&z[i][..i]) {
+                add(&mut factors, factor, row);
             }
             for row in z.iter_mut().take(i) {
                 let u = row[i];

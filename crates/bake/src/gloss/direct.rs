@@ -13,8 +13,7 @@ pub(super) struct Direct {
 impl Direct {
     pub(super) fn new(gloss: Bands, light: Bands) -> Self {
         let lights = light.coefficients() as u32;
-        let term =
-            |Triple { a, b, c, value }: Triple| (u32::from(a) * lights + u32::from(b), u32::from(c), value as f32);
+        let term = |Triple { a, b, c, value }: Triple| (a * lights + b, c, value as f32);
         let terms = triples(gloss, light, gloss).into_iter().map(term).collect();
         Self { terms, entries: gloss.coefficients() * light.coefficients() }
     }

@@ -14,8 +14,16 @@ use raytrace::Hit;
 use sh_math::Rgb;
 use sh_math::light_matrix::{LightProduct, apply};
 
-/// Most tables; the last holds all bounces from there on.
+/// Most tables. The last holds all that surfaces scatter from there on, and what mirrors send of the bounce before it.
 const MOST_TABLES: usize = 4;
+
+/// Adds the radiance of every receiver after a bounce to those before; from the last table on they are one.
+pub(crate) fn add_table(tables: &mut Vec<Vec<[f32; 3]>>, own: Vec<[f32; 3]>) {
+    match tables.get_mut(MOST_TABLES - 1) {
+        Some(last) => last.iter_mut().zip(own).for_each(|(sum, x)| *sum = std::array::from_fn(|c| sum[c] + x[c])),
+        None => tables.push(own),
+    }
+}
 
 /// What surfaces send in each bounce under one light.
 pub(crate) struct FixedBounces<'a> {
@@ -36,12 +44,7 @@ impl<'a> FixedBounces<'a> {
         light: &Rgb,
         bounces: u32,
     ) -> Result<Self, Error> {
-        let mut scattered: Vec<Vec<[f32; 3]>> = done.radiance.iter().take(bounces as usize).cloned().collect();
-        while scattered.len() > MOST_TABLES {
-            let rest = scattered.pop().expect("more than the most");
-            let last = scattered.last_mut().expect("more than the most");
-            last.iter_mut().zip(rest).for_each(|(sum, x)| *sum = std::array::from_fn(|c| sum[c] + x[c]));
-        }
+        let scattered: Vec<Vec<[f32; 3]>> = done.radiance.iter().take(bounces as usize).cloned().collect();
         let matrix = LightProduct::new(mirrors.bands).matrix(light);
         let direct = (0..mirrors.rows()).flat_map(|row| apply(&matrix, mirrors.visibility(row))).collect();
         let mut all = Self { done, mirrors, scattered, arriving: vec![direct] };

@@ -200,8 +200,12 @@ fn add_vertices(done: &Done<'_>, maker: &RowMaker<'_>, texel: &Texel, row: &mut 
 
 /// Makes both sides of seams agree, sheets of one layout among each other.
 fn stitch(done: &Done<'_>, plans: &[SheetPlan], plates: &mut [Plate]) {
-    let mut layouts: Vec<Layout> = plans.iter().map(|plan| plan.layout).collect();
-    layouts.dedup();
+    let mut layouts: Vec<Layout> = Vec::new();
+    for plan in plans {
+        if !layouts.contains(&plan.layout) {
+            layouts.push(plan.layout);
+        }
+    }
     for layout in layouts {
         let mut sheet_of_mesh = vec![None; done.scene.meshes.len()];
         let mut own: Vec<&mut Plate> = Vec::new();

@@ -1,6 +1,6 @@
 //! Whether maps can be baked, before anything is.
 
-use super::{MapSettings, functions};
+use super::{MapSettings, SheetSettings, functions};
 use crate::Error;
 use crate::field::Field;
 use coeff_io::{Plan, Settings};
@@ -24,7 +24,7 @@ pub(crate) fn check(
     settings: &Settings,
     has_light: bool,
 ) -> Result<(), Error> {
-    check_settings(maps, scene)?;
+    check_sheets(&maps.sheets, maps.dilation, scene)?;
     let light = Bands::new(plan.bands).expect("no more than the settings ask for");
     let (depth, channels) = if has_light { (1, 3) } else { (light.coefficients(), plan.channels as usize) };
     let row = functions(has_light).coefficients() * depth * channels;
@@ -48,24 +48,25 @@ pub(crate) fn check(
     Ok(())
 }
 
-fn check_settings(maps: &MapSettings, scene: &Scene) -> Result<(), Error> {
+/// Checks that sheets are no larger than can be held, and that a mesh lies on one at most.
+pub(crate) fn check_sheets(sheets: &[SheetSettings], dilation: u32, scene: &Scene) -> Result<(), Error> {
     let refuse = |setting, value: String, allowed| Err(Error::Setting { setting, value, allowed });
     let sides = 1..=MAX_SIDE;
-    for sheet in &maps.sheets {
+    for sheet in sheets {
         if !sides.contains(&sheet.width) || !sides.contains(&sheet.height) {
             let value = format!("{} x {}", sheet.width, sheet.height);
             return refuse("--texels", value, "use sheets of 1 to 8192 texels along each side");
         }
     }
-    let all: u64 = maps.sheets.iter().map(|sheet| u64::from(sheet.width) * u64::from(sheet.height)).sum();
+    let all: u64 = sheets.iter().map(|sheet| u64::from(sheet.width) * u64::from(sheet.height)).sum();
     if all > MAX_TEXELS {
         return refuse("--texels", format!("{all} in all"), "use sheets of 2^31 texels at most together");
     }
-    if maps.dilation > MAX_DILATION {
-        return refuse("dilation", maps.dilation.to_string(), "use 0 to 64 rings");
+    if dilation > MAX_DILATION {
+        return refuse("dilation", dilation.to_string(), "use 0 to 64 rings");
     }
     let mut seen = vec![false; scene.meshes.len()];
-    for &mesh in maps.sheets.iter().flat_map(|sheet| &sheet.meshes) {
+    for &mesh in sheets.iter().flat_map(|sheet| &sheet.meshes) {
         match seen.get_mut(mesh) {
             Some(seen) if !*seen => *seen = true,
             _ => return refuse("sheets", format!("mesh {mesh}"), "a mesh of the scene lies in one sheet at most"),
