@@ -47,14 +47,20 @@ pub struct Compressed {
 pub fn compress(rows: &[f32], columns: usize, aim: &Aim) -> Option<Compressed> {
     assert!(columns > 0 && rows.len().is_multiple_of(columns), "whole rows");
     let plain = 2 * rows.len();
-    let found = search(rows, columns, aim)?;
-    if found.bytes >= plain {
-        return None;
+    // Rows outside of the sample may be farther off than those in it: then a finer choice is looked for.
+    for part in [1.0, 0.85, 0.7] {
+        let found = search(rows, columns, &Aim { error: part * aim.error, ..*aim })?;
+        if found.bytes >= plain {
+            return None;
+        }
+        let all = found.encode(rows, None);
+        let table = Table::clustered(&all.book, &all.clusters, &all.weights);
+        let error = distance(rows, &table.decode(Some(&all.book)));
+        if error <= 1.05 * aim.error {
+            return Some(Compressed { error, ..all });
+        }
     }
-    let all = found.encode(rows, None);
-    let table = Table::clustered(&all.book, &all.clusters, &all.weights);
-    let error = distance(rows, &table.decode(Some(&all.book)));
-    (error <= 1.05 * aim.error).then_some(Compressed { error, ..all })
+    None
 }
 
 /// Puts rows that are kept by the vectors of a sketch into clusters, whose means and vectors are combinations of the sketch's. The error reached

@@ -119,7 +119,11 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
     }
     if let Some(gloss) = &achieved.gloss {
         console.notice(&gloss_text(gloss, prt.settings.quality));
-        let [.., bounces] = gloss.compression;
+        let [transfer, visibility, bounces] = gloss.compression;
+        if let Some(asked) = options.extras.gloss.compress.filter(|_| transfer == 0.0 && visibility == 0.0) {
+            console
+                .notice(&format!("clusters to {:.2} % would take no less: rows are kept as they are", 100.0 * asked));
+        }
         let asked = options.extras.gloss.bounce_error;
         if bounces > 1.5 * asked {
             console.notice(&format!(
