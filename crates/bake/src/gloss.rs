@@ -34,7 +34,7 @@ use std::collections::BTreeMap;
 /// Receivers that a sketch is learned from.
 const SAMPLE: usize = 1024;
 /// Numbers of a row of bounces up to which it is kept in full.
-const SHORT: usize = 96;
+const SHORT: usize = 16;
 /// Least bands over directions: what the cosine of diffuse transfer needs.
 const DIFFUSE_BANDS: u32 = 3;
 
