@@ -43,7 +43,7 @@ use scene::Scene;
 use std::ops::ControlFlow;
 
 /// What is to be studied.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Request<'a> {
     /// The scene, not split yet.
     pub scene: &'a Scene,

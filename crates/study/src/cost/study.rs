@@ -11,7 +11,7 @@ use super::trials::{Trial, as_asked, trials};
 use super::truth::{Reference, reference};
 use super::{Error, ProgressFn, Request, Targets, frames, front, gloss, light_maps, views};
 use crate::bases::scene::Comparison;
-use coeff_io::{Prt, Transfer};
+use coeff_io::{Effect, Effects, Prt, Settings, Transfer};
 
 /// Receivers in the list of the worst.
 const WORST: usize = 10;
@@ -27,6 +27,8 @@ const FRAMES_PART: f64 = 12.0;
 /// # Errors
 /// [`Error`] where a bake or a picture fails, or `progress` asked to stop.
 pub fn study(request: &Request<'_>, progress: ProgressFn<'_>) -> Result<Report, Error> {
+    let whole = request;
+    let request = &without_gloss(request);
     let mut bakes = Bakes::new(request.scene, &request.settings, request.budget, progress)?;
     let reference = reference(request, &mut bakes)?;
     let mut sweep =
@@ -36,10 +38,23 @@ pub fn study(request: &Request<'_>, progress: ProgressFn<'_>) -> Result<Report, 
     let rest = wanted.split_off(FIRST.min(wanted.len()));
     sweep.trials(wanted, &mut bakes)?;
     let bases = light_maps::study(request, &mut bakes, &mut sweep.left_out)?;
-    let gloss = gloss::study(request, &mut bakes, &mut sweep.left_out)?;
+    let gloss = gloss::study(whole, &mut bakes, &mut sweep.left_out)?;
     sweep.trials(rest, &mut bakes)?;
     let resolution = resolution::study(request, &reference.truth, &bakes, &mut sweep.left_out)?;
     sweep.report(reference, resolution, (bases, gloss), &bakes)
+}
+
+/// The same where surfaces mirror nothing by direction: what turns the knobs of transfer leaves gloss to its own table, since it costs many times as
+/// much in the bands of the reference.
+fn without_gloss<'a>(request: &Request<'a>) -> Request<'a> {
+    let kept = |list: &[Effect]| list.iter().copied().filter(|&effect| effect != Effect::Glossy).collect();
+    let effects = match &request.settings.effects {
+        Effects::Auto => Effects::Only(kept(&Effect::ALL)),
+        Effects::Only(list) => Effects::Only(kept(list)),
+        // Whoever wants all of it gets it.
+        Effects::All => Effects::All,
+    };
+    Request { settings: Settings { effects, ..request.settings.clone() }, ..request.clone() }
 }
 
 /// A run before it is compared, and its coefficients.

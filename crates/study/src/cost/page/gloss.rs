@@ -9,7 +9,7 @@ pub(super) fn section(report: &Report) -> String {
     let Some(gloss) = &report.gloss else { return String::new() };
     let rows: String = gloss.runs.iter().map(row).collect();
     format!(
-        "<h2>Gloss and transfer textures</h2>\n<p>The plan calls for reflections by direction. Bakes of 256 rays per receiver that differ in storage alone: at \
+        "<h2>Gloss and transfer textures</h2>\n<p>The plan calls for reflections by direction, which the runs above leave out. Bakes of 256 rays per receiver that differ in storage alone: at \
          vertices, at texels, and in clusters (clustered PCA). The difference is that of the picture under this light, root mean square, from that \
          of the finest texture; of clusters, from the same without them. {}. To keep the target error:</p>\n<pre><code>{}</code></pre>\n<div \
          class=\"wide\"><table>\n<thead><tr><th>options</th><th>receivers</th><th>time</th><th>bytes</th><th>clusters x vectors: transfer</th>\
