@@ -44,6 +44,7 @@ pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, 
         generator: concat!("relume ", env!("CARGO_PKG_VERSION")).to_owned(),
         convention: sh_math::CONVENTION.to_owned(),
         scene: scene.name.clone(),
+        origin: [0.0; 3],
         settings: settings.clone(),
         transfer: flattened(baked.transfer, receivers.permanent, baked.plan.bands, baked.openness, albedo),
         plan: baked.plan,
@@ -211,6 +212,7 @@ impl KeptTextures<'_> {
             },
             specular,
             transmission: if transmission { m.transmission } else { 0.0 },
+            unlit: false,
         }
     }
 

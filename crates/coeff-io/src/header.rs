@@ -38,6 +38,9 @@ pub struct Header {
     pub volume: Option<VolumeHeader>,
     /// Gloss, transfer textures and what is clustered.
     pub surfaces: SurfacesHeader,
+    /// World position of the coordinates' zero, metres; in the supplement.
+    #[serde(skip)]
+    pub origin: [f64; 3],
 }
 
 /// A texture without its pixels.
@@ -79,6 +82,7 @@ impl Header {
             maps: prt.maps.as_ref().map(MapsHeader::of),
             volume: prt.volume.as_ref().map(VolumeHeader::of),
             surfaces: SurfacesHeader::of(prt),
+            origin: prt.origin,
         }
     }
 

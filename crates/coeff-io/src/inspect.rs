@@ -1,7 +1,7 @@
 //! A look at a file without reading its arrays into memory.
 
-use crate::read::{open, read_header};
-use crate::{Chunk, Error, Header, VERSION};
+use crate::read::{Front, open, read_front};
+use crate::{Chunk, Error, Header, Supplement};
 use serde::Serialize;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -17,6 +17,8 @@ pub struct Inspection {
     pub chunks: Vec<Chunk>,
     /// Every small record.
     pub header: Header,
+    /// Records of the header that came after version 4.
+    pub supplement: Supplement,
 }
 
 /// Reads the table and the header of a file, not its arrays.
@@ -25,8 +27,9 @@ pub struct Inspection {
 /// As [`crate::Prt::read`] for what is read.
 pub fn inspect(path: &Path) -> Result<Inspection, Error> {
     let (file, file_length) = open(path)?;
-    let (chunks, header) = read_header(&mut BufReader::new(file), file_length)?;
-    Ok(Inspection { version: VERSION, file_length, chunks, header })
+    let Front { version, chunks, header } = read_front(&mut BufReader::new(file), file_length)?;
+    let supplement = Supplement::from_header(&header);
+    Ok(Inspection { version, file_length, chunks, header, supplement })
 }
 
 /// Computes the CRC-32 of every chunk anew, in file order, with a small buffer; compare with [`Chunk::crc32`].

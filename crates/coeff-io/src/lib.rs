@@ -38,6 +38,7 @@ mod record;
 mod replace;
 mod rows;
 mod sidecar;
+mod supplement;
 mod table;
 mod texels;
 mod transfer_textures;
@@ -75,6 +76,7 @@ pub use record::{
 };
 pub use replace::replace;
 pub use rows::{Codebook, Form, Table};
+pub use supplement::Supplement;
 pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};
 pub use texels::Container;
 pub use transfer_textures::{TransferLevel, TransferSheet, TransferTextures};

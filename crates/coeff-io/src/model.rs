@@ -12,6 +12,8 @@ pub struct Prt {
     pub convention: String,
     /// The scene as the user named it.
     pub scene: String,
+    /// World position of the zero of all coordinates here, metres: what was taken off before rounding to f32.
+    pub origin: [f64; 3],
     /// What was asked for.
     pub settings: Settings,
     /// Which effects were simulated, and why.
@@ -128,6 +130,9 @@ pub struct Material {
     pub specular: bool,
     /// Share of light that passes through.
     pub transmission: f32,
+    /// Whether the base colour is shown as it is, whatever the light; in the supplement.
+    #[serde(skip)]
+    pub unlit: bool,
 }
 
 /// How the coverage of a surface is treated.

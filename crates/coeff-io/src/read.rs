@@ -1,6 +1,7 @@
 //! Bytes become a [`Prt`].
 
 use crate::gloss_header::{Joined, SurfaceBytes};
+use crate::supplement::Supplement;
 use crate::table::{self, Chunk, Kind};
 use crate::volume_header::VolumeArrays;
 use crate::{Codebook, Error, Geometry, Header, Prt, Table, Texture, Transfer, array, validate};
@@ -39,22 +40,42 @@ pub(crate) fn open(path: &Path) -> Result<(File, u64), Error> {
     Ok((file, metadata.len()))
 }
 
-/// Reads prelude, table and header chunk.
-pub(crate) fn read_header(from: &mut impl Read, file_length: u64) -> Result<(Vec<Chunk>, Header), Error> {
-    let chunks = table::read(from, file_length)?;
+/// What stands before the arrays of a file.
+pub(crate) struct Front {
+    pub(crate) version: u32,
+    pub(crate) chunks: Vec<Chunk>,
+    pub(crate) header: Header,
+}
+
+impl Front {
+    /// Number of chunks that are part of the header.
+    fn chunks_read(&self) -> usize {
+        1 + usize::from(self.chunks.get(1).is_some_and(|chunk| chunk.kind == Kind::Supplement))
+    }
+}
+
+/// Reads prelude, table, header and supplement.
+pub(crate) fn read_front(from: &mut impl Read, file_length: u64) -> Result<Front, Error> {
+    let (version, chunks) = table::read(from, file_length)?;
     let header = array::read::<u8>(&chunks[0], from)?;
-    let header = Header::decode(&header, chunks[0].offset)?;
+    let mut header = Header::decode(&header, chunks[0].offset)?;
     if header.convention != sh_math::CONVENTION {
         let (theirs, ours) = (&header.convention, sh_math::CONVENTION);
         return Err(Error::Unsupported(format!("the coefficients follow the convention '{theirs}', not '{ours}'")));
     }
-    Ok((chunks, header))
+    if let Some(chunk) = chunks.get(1).filter(|chunk| chunk.kind == Kind::Supplement) {
+        array::read_padding(chunks[0].end(), chunk, from)?;
+        Supplement::decode_into(&mut header, &array::read::<u8>(chunk, from)?, chunk.offset)?;
+    }
+    Ok(Front { version, chunks, header })
 }
 
 fn read_from(mut from: impl Read, file_length: u64) -> Result<Prt, Error> {
-    let (chunks, header) = read_header(&mut from, file_length)?;
+    let front = read_front(&mut from, file_length)?;
+    let first = front.chunks_read() - 1;
+    let Front { chunks, header, .. } = front;
     let mut arrays = Arrays::default();
-    for pair in chunks.windows(2) {
+    for pair in chunks[first..].windows(2) {
         array::read_padding(pair[0].end(), &pair[1], &mut from)?;
         arrays.read(&pair[1], &mut from)?;
     }
@@ -78,8 +99,8 @@ impl Arrays {
     fn read(&mut self, chunk: &Chunk, from: &mut impl Read) -> Result<(), Error> {
         let (geometry, transfer, volume) = (&mut self.geometry, &mut self.transfer, &mut self.volume);
         match chunk.kind {
-            // The table allows one header, and it was read before.
-            Kind::Header => {}
+            // The table allows one header and one supplement, and they were read before.
+            Kind::Header | Kind::Supplement => {}
             Kind::Positions => geometry.positions = array::read(chunk, from)?,
             Kind::Normals => geometry.normals = array::read(chunk, from)?,
             Kind::Tangents => geometry.tangents = array::read(chunk, from)?,
@@ -145,6 +166,7 @@ impl Arrays {
             generator: header.generator,
             convention: header.convention,
             scene: header.scene,
+            origin: header.origin,
             settings: header.settings,
             plan: header.plan,
             achieved: header.achieved,

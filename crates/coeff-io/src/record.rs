@@ -113,6 +113,10 @@ pub struct Achieved {
     pub maps: Option<MapRecord>,
     /// What gloss and transfer textures took and reached, where there are any.
     pub gloss: Option<GlossRecord>,
+    /// Error of the transfer between receivers, as renderers interpolate it, against the transfer measured at points
+    /// there: median, 95th percentile, worst; none where it was not measured. In the supplement.
+    #[serde(skip)]
+    pub interpolation: Option<[f32; 3]>,
 }
 
 /// What gloss and transfer textures took and reached.

@@ -10,7 +10,10 @@ use std::io::{self, Read, Write};
 pub const MAGIC: [u8; 8] = *b"\x89PRT\r\n\x1a\n";
 
 /// Version of the format, apart from the version of the program.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
+
+/// The oldest version that is still read.
+const OLDEST: u32 = 4;
 
 /// Every chunk begins at a multiple of so many bytes, so that a mapped file can be used without copying.
 pub const ALIGNMENT: u64 = 16;
@@ -26,6 +29,8 @@ const ROW: usize = 32;
 pub enum Kind {
     /// The small records, in bincode.
     Header,
+    /// Small records that came after version 4, in JSON.
+    Supplement,
     /// `[vertex][3]` f32.
     Positions,
     /// `[vertex][3]` f32.
@@ -70,8 +75,9 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind with its tag, in file order.
-    const TAGS: [(Self, [u8; 4]); 21] = [
+    const TAGS: [(Self, [u8; 4]); 22] = [
         (Self::Header, *b"HEAD"),
+        (Self::Supplement, *b"MORE"),
         (Self::Positions, *b"POSN"),
         (Self::Normals, *b"NORM"),
         (Self::Tangents, *b"TANG"),
@@ -176,11 +182,12 @@ pub(crate) fn write(chunks: &[Chunk], to: &mut impl Write) -> io::Result<()> {
     to.write_all(&bytes)
 }
 
-/// Reads prelude and table of a file of `file_length` bytes and checks that they describe exactly this file.
+/// Reads prelude and table of a file of `file_length` bytes and checks that they describe exactly this file: its version
+/// and its chunks.
 ///
 /// # Errors
 /// `Unsupported` for another version or an unknown kind, `Invalid` for everything else that is wrong.
-pub(crate) fn read(from: &mut impl Read, file_length: u64) -> Result<Vec<Chunk>, Error> {
+pub(crate) fn read(from: &mut impl Read, file_length: u64) -> Result<(u32, Vec<Chunk>), Error> {
     let mut prelude = [0; PRELUDE];
     if file_length < PRELUDE as u64 {
         return Err(Error::invalid(
@@ -196,7 +203,11 @@ pub(crate) fn read(from: &mut impl Read, file_length: u64) -> Result<Vec<Chunk>,
     let chunks = rows.chunks_exact(ROW).enumerate().map(|(i, row)| parse_row(i, row));
     let chunks = chunks.collect::<Result<Vec<_>, _>>()?;
     check_layout(&chunks, file_length)?;
-    Ok(chunks)
+    let version = u32_at(&prelude, 8);
+    if version < 5 && chunks.iter().any(|chunk| chunk.kind == Kind::Supplement) {
+        return Err(Error::invalid(PRELUDE as u64, format!("a file of version {version} has no chunk MORE")));
+    }
+    Ok((version, chunks))
 }
 
 fn u32_at(bytes: &[u8], at: usize) -> u32 {
@@ -213,9 +224,9 @@ fn check_prelude(prelude: &[u8; PRELUDE], file_length: u64) -> Result<usize, Err
         return Err(Error::invalid(0, "the file does not begin as a .prt file does"));
     }
     let version = u32_at(prelude, 8);
-    if version != VERSION {
+    if !(OLDEST..=VERSION).contains(&version) {
         return Err(Error::Unsupported(format!(
-            "the file is of format version {version}, but this program reads version {VERSION}: bake the scene again or use the program that wrote it"
+            "the file is of format version {version}, but this program reads versions {OLDEST} to {VERSION}: bake the scene again or use the program that wrote it"
         )));
     }
     let stated = u64_at(prelude, 16);

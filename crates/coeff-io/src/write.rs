@@ -1,6 +1,7 @@
 //! A [`Prt`] becomes bytes.
 
 use crate::gloss_header::{levels, tables};
+use crate::supplement::Supplement;
 use crate::table::{self, Kind};
 use crate::volume_header::nodes_to_words;
 use crate::{Error, Header, Prt, Volume, array, replace, validate};
@@ -37,8 +38,10 @@ struct Image<'a> {
 
 impl<'a> Image<'a> {
     fn of(prt: &'a Prt) -> Result<Self, Error> {
-        let header = Header::of(prt).encode()?;
-        let mut parts = vec![(Kind::Header, 0, Cow::Owned(header))];
+        let header = Header::of(prt);
+        let small = [(Kind::Header, header.encode()?), (Kind::Supplement, Supplement::encode(&header)?)];
+        let small = small.into_iter().map(|(kind, bytes)| (kind, 0, Cow::<[u8]>::Owned(bytes)));
+        let mut parts: Vec<_> = small.filter(|(_, _, bytes)| !bytes.is_empty()).collect();
         parts.extend(arrays(prt).filter(|(_, _, bytes)| !bytes.is_empty()));
         let row =
             |(kind, index, bytes): &(Kind, u32, Cow<[u8]>)| (*kind, *index, bytes.len() as u64, crc32fast::hash(bytes));

@@ -234,6 +234,7 @@ pub(crate) fn shell(prt: &Prt) -> Prt {
         generator: String::new(),
         convention: prt.convention.clone(),
         scene: String::new(),
+        origin: prt.origin,
         settings: prt.settings.clone(),
         plan: coeff_io::Plan::default(),
         achieved: coeff_io::Achieved::default(),

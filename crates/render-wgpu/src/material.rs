@@ -216,6 +216,7 @@ mod tests {
             alpha: AlphaMode::Opaque,
             specular: false,
             transmission: 0.0,
+            unlit: false,
         }
     }
 

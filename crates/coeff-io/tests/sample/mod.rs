@@ -9,6 +9,7 @@ pub(crate) fn sample() -> Prt {
         generator: "relume 0.1.0".into(),
         convention: sh_math::CONVENTION.into(),
         scene: "builtin:sample".into(),
+        origin: [500_000.1, 0.0, -5_300_000.3],
         settings: settings(),
         plan: plan(),
         achieved: Achieved {
@@ -45,6 +46,7 @@ pub(crate) fn sample() -> Prt {
                 compression: [0.01, 0.02, 0.03],
                 bytes: [1000, 100],
             }),
+            interpolation: Some([0.001, 0.1, 0.75]),
         },
         meshes: vec![mesh("floor", 0, [0, 4], [0, 2]), mesh("wall é", 1, [4, 3], [2, 1])],
         materials: vec![material("stone"), plain_material("glass")],
@@ -146,6 +148,7 @@ fn plain_material(name: &str) -> Material {
         alpha: AlphaMode::Blend,
         specular: false,
         transmission: 0.5,
+        unlit: true,
     }
 }
 
@@ -160,6 +163,7 @@ fn material(name: &str) -> Material {
         alpha: AlphaMode::Mask(0.5),
         specular: true,
         transmission: 0.0,
+        unlit: false,
         ..plain_material(name)
     }
 }

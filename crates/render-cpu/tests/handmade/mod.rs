@@ -36,6 +36,7 @@ pub(crate) fn white() -> Material {
         alpha: AlphaMode::Opaque,
         specular: false,
         transmission: 0.0,
+        unlit: false,
     }
 }
 

@@ -30,6 +30,7 @@ pub(crate) fn white() -> Material {
         alpha: AlphaMode::Opaque,
         specular: false,
         transmission: 0.0,
+        unlit: false,
     }
 }
 
@@ -239,6 +240,7 @@ fn add_panes(prt: &mut Prt) {
         roughness: 0.1,
         specular: true,
         transmission: 0.7,
+        unlit: false,
         ..white()
     };
     let up = Vec3::Y * 1.4;
