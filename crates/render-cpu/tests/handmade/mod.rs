@@ -51,6 +51,7 @@ pub(crate) fn empty() -> Prt {
         generator: "test".into(),
         convention: sh_math::CONVENTION.into(),
         scene: "test".into(),
+        origin: [0.0; 3],
         settings: Settings {
             bands: 2,
             band_choice: BandChoice::Exactly,

@@ -65,6 +65,7 @@ fn empty(channels: u32) -> Prt {
         generator: "test".into(),
         convention: sh_math::CONVENTION.into(),
         scene: "test".into(),
+        origin: [0.0; 3],
         settings: Settings {
             bands: BANDS,
             band_choice: BandChoice::Exactly,
