@@ -3,7 +3,7 @@
 //! Two-sided transport under distant light, by plain paths: next-event estimation towards picture and lamps, combined with directions
 //! that are drawn by the surface. Diffuse, unless a world is given a [`Gloss`]. No spherical harmonics, no interpolation between vertices, no code
 //! shared with the baker. What it draws is the same: both sides of a surface block and reflect; surfaces that blend
-//! or transmit do not stop light; emission is seen by the camera but lights nothing.
+//! or transmit stop the share of light that they cover, and tint what passes through them; emission is seen by the camera but lights nothing.
 
 mod camera;
 mod gloss;

@@ -74,7 +74,9 @@ fn scatter(
     if surface.is_below(direction) {
         return None;
     }
-    match step(world, surface.origin, direction, last) {
+    let (next, share) = step(world, surface.origin, direction, last, rng);
+    path.throughput *= share;
+    match next {
         Step::Blocked => None,
         Step::Sky => {
             let (radiance, light_pdf) = light.image.look(direction);
@@ -96,15 +98,15 @@ pub(crate) enum Step {
     Blocked,
 }
 
-/// Follows a ray of light back. The step after the last bounce needs only to know whether it leaves the scene.
-pub(crate) fn step(world: &World, origin: Vec3, direction: Vec3, last: bool) -> Step {
+/// Follows a ray of light back: where it leads, and the share of the light from there that veils on the way pass. The step after the last
+/// bounce needs only to know how much leaves the scene.
+pub(crate) fn step(world: &World, origin: Vec3, direction: Vec3, last: bool, rng: &mut Rng) -> (Step, Vec3) {
     if !last {
-        world.closest(origin, direction).map_or(Step::Sky, Step::Surface)
-    } else if world.occluded(origin, direction) {
-        Step::Blocked
-    } else {
-        Step::Sky
+        let (surface, share) = world.closest(origin, direction, rng);
+        return (surface.map_or(Step::Sky, Step::Surface), share);
     }
+    let share = world.transmittance(origin, direction);
+    (if share == Vec3::ZERO { Step::Blocked } else { Step::Sky }, share)
 }
 
 /// Direct light of all lamps that an albedo of 1 would reflect.
@@ -113,8 +115,8 @@ fn from_lamps(world: &World, light: &Light, surface: &Surface, rng: &mut Rng) ->
     for lamp in &light.lamps {
         let (direction, flux) = lamp.sample(rng.next_square());
         let cosine = surface.normal.dot(direction);
-        if cosine > 0.0 && !surface.is_below(direction) && !world.occluded(surface.origin, direction) {
-            sum += flux * (cosine * FRAC_1_PI);
+        if cosine > 0.0 && !surface.is_below(direction) {
+            sum += flux * (cosine * FRAC_1_PI) * world.transmittance(surface.origin, direction);
         }
     }
     sum
@@ -126,10 +128,11 @@ fn from_image(world: &World, light: &Light, surface: &Surface, rng: &mut Rng) ->
         return Vec3::ZERO;
     };
     let cosine = surface.normal.dot(sample.direction);
-    if cosine <= 0.0 || surface.is_below(sample.direction) || world.occluded(surface.origin, sample.direction) {
+    if cosine <= 0.0 || surface.is_below(sample.direction) {
         return Vec3::ZERO;
     }
+    let share = world.transmittance(surface.origin, sample.direction);
     // radiance * (cosine / pi) / pdf * pdf / (pdf + cosine pdf)
     let cosine_pdf = cosine * FRAC_1_PI;
-    sample.radiance * (cosine_pdf / (sample.pdf + cosine_pdf))
+    sample.radiance * (cosine_pdf / (sample.pdf + cosine_pdf)) * share
 }

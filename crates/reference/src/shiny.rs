@@ -72,7 +72,9 @@ pub(crate) fn reflect(
         return None;
     }
     path.throughput *= reflected / pdf;
-    match step(world, both.surface.origin, direction, last) {
+    let (next, share) = step(world, both.surface.origin, direction, last, rng);
+    path.throughput *= share;
+    match next {
         Step::Blocked => None,
         Step::Surface(next) => Some(next),
         Step::Sky => {
@@ -128,10 +130,10 @@ impl<'a> Parts<'a> {
     /// What a direction drawn with the density `pdf` shows of `radiance / pdf`, weighted; nothing where it is blocked.
     fn shown(&self, world: &World, direction: Vec3, per_density: Vec3, share: impl Fn(f32) -> f32) -> Vec3 {
         let (reflected, pdf) = self.at(direction);
-        if reflected.max_element() <= 0.0 || world.occluded(self.surface.origin, direction) {
+        if reflected.max_element() <= 0.0 {
             return Vec3::ZERO;
         }
-        per_density * reflected * share(pdf)
+        per_density * reflected * share(pdf) * world.transmittance(self.surface.origin, direction)
     }
 
     fn lamps(&self, world: &World, light: &Light, rule: Rule, rng: &mut Rng) -> Vec3 {

@@ -12,7 +12,7 @@ use scene::{Material, Scene};
 pub struct World<'a> {
     /// Surfaces that stop light.
     solid: Layer<'a>,
-    /// Surfaces that only the camera sees: they blend or transmit. None where the scene has none.
+    /// Surfaces that stop a part of the light: they blend or transmit. None where the scene has none.
     veils: Option<Layer<'a>>,
 }
 
@@ -85,15 +85,42 @@ impl<'a> World<'a> {
         self
     }
 
-    /// Whether anything stops light on the way to infinity.
-    pub(crate) fn occluded(&self, origin: Vec3, direction: Vec3) -> bool {
-        self.solid.tracer.occluded(&Ray::new(origin, direction), &|t, u, v| self.solid.is_there(t, u, v))
+    /// Share of the light from infinity that arrives at a point, RGB: the product of what every veil on the way passes.
+    pub(crate) fn transmittance(&self, origin: Vec3, direction: Vec3) -> Vec3 {
+        let mut ray = Ray::new(origin, direction);
+        if self.solid.tracer.occluded(&ray, &|t, u, v| self.solid.is_there(t, u, v)) {
+            return Vec3::ZERO;
+        }
+        let mut share = Vec3::ONE;
+        if let Some(veils) = &self.veils {
+            while let Some(hit) = veils.closest(&ray).filter(|_| share.max_element() > 0.0) {
+                share *= veils.passes(&hit);
+                ray.t_min = hit.t.next_up();
+            }
+        }
+        share
     }
 
-    /// The surface that a ray of light meets, on the side where it arrives.
-    pub(crate) fn closest(&self, origin: Vec3, direction: Vec3) -> Option<Surface> {
-        let hit = self.solid.closest(&Ray::new(origin, direction))?;
-        Some(self.solid.surface(&hit, direction))
+    /// The surface that a ray of light meets, on the side where it arrives, and the share of its light that the veils before it pass.
+    ///
+    /// A veil is met with the probability of its opacity, so the mean over rays is that of [`World::transmittance`].
+    pub(crate) fn closest(&self, origin: Vec3, direction: Vec3, rng: &mut Rng) -> (Option<Surface>, Vec3) {
+        let mut ray = Ray::new(origin, direction);
+        let behind = self.solid.closest(&ray);
+        let mut share = Vec3::ONE;
+        if let Some(veils) = &self.veils {
+            ray.t_max = behind.map_or(f32::INFINITY, |hit| hit.t);
+            while let Some(hit) = veils.closest(&ray) {
+                let opacity = veils.opacity(&hit);
+                if rng.next_f32() < opacity {
+                    return (Some(veils.surface(&hit, direction)), share);
+                }
+                // It went on with the probability of the rest.
+                share *= veils.passes(&hit) / (1.0 - opacity);
+                ray.t_min = hit.t.next_up();
+            }
+        }
+        (behind.map(|hit| self.solid.surface(&hit, direction)), share)
     }
 
     /// The surface that a camera ray shows. Backs of single-sided surfaces are not drawn; a veil is seen with the
@@ -161,6 +188,19 @@ impl<'a> Layer<'a> {
     fn opacity(&self, hit: &Hit) -> f32 {
         let (mesh, triangle) = self.part(hit.triangle);
         self.scene.coverage(mesh, triangle, hit.u, hit.v) * (1.0 - self.scene.material(mesh).transmission)
+    }
+
+    /// Share of light from behind that a veil passes, RGB: all of it beside the surface, and through the surface what it transmits, in
+    /// its base colour.
+    fn passes(&self, hit: &Hit) -> Vec3 {
+        let (mesh, triangle) = self.part(hit.triangle);
+        let covered = self.scene.coverage(mesh, triangle, hit.u, hit.v);
+        let transmission = self.scene.material(mesh).transmission;
+        if transmission <= 0.0 {
+            return Vec3::splat(1.0 - covered);
+        }
+        let tint = self.scene.base_color(mesh, triangle, hit.u, hit.v).truncate().clamp(Vec3::ZERO, Vec3::ONE);
+        Vec3::splat(1.0 - covered) + covered * transmission * tint
     }
 
     fn seen(&self, hit: &Hit, direction: Vec3) -> Seen {
