@@ -24,7 +24,7 @@ impl Console {
     /// Prints a result on stdout.
     pub(crate) fn print(&self, text: &str) -> Result<()> {
         let mut out = io::stdout().lock();
-        out.write_all(text.as_bytes())?;
+        out.write_all(visible(text).as_bytes())?;
         if !text.ends_with('\n') {
             out.write_all(b"\n")?;
         }
@@ -54,7 +54,7 @@ impl Console {
 
     /// A lost stderr is no reason to stop.
     fn line(&self, text: &str) {
-        let _ = writeln!(io::stderr(), "{text}");
+        let _ = writeln!(io::stderr(), "{}", visible(text));
     }
 
     /// Shows how far a long work is: a bar with rate and time left on a terminal, a line now and then elsewhere.
@@ -70,6 +70,16 @@ impl Console {
         let lines = Mutex::new(Lines { stage: String::new(), began: Instant::now(), said: Instant::now() });
         Progress { lines: shown && bar.is_none(), bar, state: lines }
     }
+}
+
+/// The text with the control characters of names escaped; ends of lines and tabs are our own.
+fn visible(text: &str) -> String {
+    text.split_inclusive(['\n', '\t'])
+        .map(|part| match part.strip_suffix(['\n', '\t']) {
+            Some(start) => scene::printable(start) + &part[start.len()..],
+            None => scene::printable(part),
+        })
+        .collect()
 }
 
 /// Whether `error` means that the reader of our output has gone away.
@@ -137,6 +147,12 @@ fn line(stage: &str, done: u64, total: u64, spent: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn control_characters_of_names_do_not_reach_the_terminal() {
+        assert_eq!(visible("a\u{1b}[2J:\tb\r\nc\n"), "a\\u{1b}[2J:\tb\\r\nc\n");
+        assert_eq!(visible("no end"), "no end");
+    }
 
     #[test]
     fn lines_tell_rate_and_time_left() {

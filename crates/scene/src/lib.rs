@@ -20,6 +20,7 @@ mod tangents;
 mod texture;
 mod uri;
 mod vertices;
+mod warnings;
 mod weld;
 
 pub use bounds::{Bounds, default_camera};
@@ -30,3 +31,4 @@ pub use model::{
     AlphaMode, Camera, LightKind, Material, Mesh, PunctualLight, Report, Scene, Texture, TextureSlot, Warning, Wrap,
 };
 pub use texture::linear_from_srgb;
+pub use warnings::printable;

@@ -14,6 +14,13 @@ use crate::{Error, Scene, Warning, gltf, obj, repair};
 /// [`Error::Io`] where a file cannot be read, [`Error::Unsupported`] where it requires what this program cannot do,
 /// [`Error::Invalid`] where it breaks its format. Missing materials and textures are warnings, not errors.
 pub fn load(path: &Path) -> Result<Scene, Error> {
+    let mut scene = read(path).map_err(Error::printable)?;
+    scene.report.join_alike();
+    Ok(scene)
+}
+
+/// The finished scene with its warnings one by one.
+fn read(path: &Path) -> Result<Scene, Error> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let read = || read_file(path).map_err(|error| Error::io(path, "scene", error));
     let mut scene = match extension.as_str() {
