@@ -44,7 +44,7 @@ pub(crate) fn bundle(scene: &Scene, receivers: &Receivers, settings: &Settings, 
         generator: concat!("relume ", env!("CARGO_PKG_VERSION")).to_owned(),
         convention: sh_math::CONVENTION.to_owned(),
         scene: scene.name.clone(),
-        origin: [0.0; 3],
+        origin: scene.origin,
         settings: settings.clone(),
         transfer: flattened(baked.transfer, receivers.permanent, baked.plan.bands, baked.openness, albedo),
         plan: baked.plan,
@@ -184,7 +184,7 @@ struct KeptTextures<'a> {
 impl KeptTextures<'_> {
     fn material(&mut self, index: usize, plan: &Plan) -> coeff_io::Material {
         let (m, facts) = (&self.scene.materials[index], Facts::of(self.scene, index));
-        let specular = simulates(plan, Effect::Specular) && facts.shines;
+        let specular = simulates(plan, Effect::Specular) && facts.shines && !m.unlit;
         let emission = simulates(plan, Effect::Emission) && facts.emission > 0.0;
         let transmission = simulates(plan, Effect::Transmission);
         let normal_maps = (specular || self.directional) && simulates(plan, Effect::NormalMaps);
@@ -212,7 +212,7 @@ impl KeptTextures<'_> {
             },
             specular,
             transmission: if transmission { m.transmission } else { 0.0 },
-            unlit: false,
+            unlit: m.unlit,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::camera::View;
 use crate::receiver::{Estimate, average};
+use crate::world::Seen;
 use crate::{Light, Settings, World, path};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -69,6 +70,7 @@ pub(crate) fn arriving(
     rng: &mut Rng,
 ) -> Vec3 {
     match world.seen(eye, direction, rng) {
+        Some(Seen { unlit: Some(color), .. }) => color,
         Some(seen) => seen.emission + path::outgoing(world, light, seen.surface, max_bounces, rng),
         None => light.sky(direction),
     }

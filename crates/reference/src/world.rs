@@ -59,6 +59,8 @@ pub(crate) struct Seen {
     pub(crate) surface: Surface,
     /// Radiance that it emits.
     pub(crate) emission: Vec3,
+    /// Base colour of an unlit material, which the camera sees as it is; none where light matters.
+    pub(crate) unlit: Option<Vec3>,
 }
 
 impl<'a> World<'a> {
@@ -205,7 +207,12 @@ impl<'a> Layer<'a> {
 
     fn seen(&self, hit: &Hit, direction: Vec3) -> Seen {
         let (mesh, triangle) = self.part(hit.triangle);
-        Seen { surface: self.surface(hit, direction), emission: self.scene.emission(mesh, triangle, hit.u, hit.v) }
+        let unlit = self.scene.material(mesh).unlit;
+        Seen {
+            surface: self.surface(hit, direction),
+            emission: self.scene.emission(mesh, triangle, hit.u, hit.v),
+            unlit: unlit.then(|| self.scene.base_color(mesh, triangle, hit.u, hit.v).truncate()),
+        }
     }
 
     /// The side of the surface that a ray along `direction` hit. The shading normal goes with the side of the winding.

@@ -131,3 +131,17 @@ fn a_break_stops_the_picture() {
     let picture = render(&World::new(&scene), &light, &view(Vec3::Y * 3.0), SIZE, &SETTINGS, &stop);
     assert!(picture.is_none(), "half a picture must not be kept");
 }
+
+/// The camera sees an unlit plane's base colour whatever the light; a veil shows it by its share.
+#[test]
+fn unlit_surfaces_show_their_base_colour() {
+    testkit::assert_close!(seen(|m| m.unlit = true, 3.0), 0.5, 0.0, 1e-6, "under a sky of {SKY}");
+    let veil = |m: &mut scene::Material| {
+        m.unlit = true;
+        m.alpha = AlphaMode::Blend;
+        m.base_color = Vec4::new(0.5, 0.5, 0.5, 0.25);
+    };
+    // A quarter of 0.5, and three quarters of the sky behind.
+    testkit::assert_close!(seen(veil, 3.0), 0.25 * 0.5 + 0.75 * f64::from(SKY), 0.0, 0.02, "an unlit veil");
+    assert!((seen(|_| (), 3.0) - 0.5).abs() > 0.4, "can fail: the lit plane is brighter");
+}

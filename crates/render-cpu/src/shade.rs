@@ -105,10 +105,15 @@ impl Shader<'_> {
     pub(crate) fn surface(&self, place: &Place<'_>) -> Surface {
         let material = place.material;
         let base = self.base(place);
+        let coverage = if material.alpha == AlphaMode::Blend { base.w.clamp(0.0, 1.0) } else { 1.0 };
+        let opacity = coverage * (1.0 - material.transmission.clamp(0.0, 1.0));
+        let color = if self.albedo { base.truncate() } else { Vec3::ONE };
+        if material.unlit {
+            return Surface { diffuse: color, gloss: Vec3::ZERO, coverage, opacity };
+        }
         let shine = self.texel(material.metallic_roughness_texture.as_ref(), place, Encoding::Linear);
         let metallic = if self.albedo { (material.metallic * shine.z).clamp(0.0, 1.0) } else { 0.0 };
         let roughness = (material.roughness * shine.y).clamp(0.0, 1.0);
-        let color = if self.albedo { base.truncate() } else { Vec3::ONE };
         let taps = self.taps(place);
         let diffuse = self.light(place, taps.as_ref()).max(Vec3::ZERO) * color * (1.0 - metallic);
         let glow = self.texel(material.emissive_texture.as_ref(), place, Encoding::Srgb(self.srgb)).truncate();
@@ -120,8 +125,6 @@ impl Shader<'_> {
             }
             _ => Vec3::ZERO,
         };
-        let coverage = if material.alpha == AlphaMode::Blend { base.w.clamp(0.0, 1.0) } else { 1.0 };
-        let opacity = coverage * (1.0 - material.transmission.clamp(0.0, 1.0));
         Surface { diffuse, gloss: specular + emission, coverage, opacity }
     }
 

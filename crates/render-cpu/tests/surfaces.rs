@@ -273,3 +273,36 @@ fn only_what_mirrors_blurs_the_probe() {
     assert_eq!(levels(Material { alpha: AlphaMode::Mask(0.5), emissive: [1.0; 3], metallic: 1.0, ..white() }), 0);
     assert_eq!(levels(Material { specular: true, ..white() }), render_cpu::REFLECTION_LEVELS, "can fail");
 }
+
+/// An unlit wall sends its base colour times texture and vertex colour under any light; its mask and coverage stay.
+#[test]
+fn unlit_surfaces_show_their_base_colour() {
+    let unlit = |alpha| Material {
+        base_color: [0.8, 0.1, 0.4, 0.25],
+        metallic: 1.0,
+        emissive: [3.0; 3],
+        specular: true,
+        unlit: true,
+        alpha,
+        ..white()
+    };
+    for radiance in [0.0, 1.0, 7.0] {
+        let environment = Environment::constant([radiance; 3]);
+        let draw = |prt: &Prt| render(prt, &environment, &frame()).expect("a sound scene and frame").linear[100];
+        assert_eq!(draw(&wall(unlit(AlphaMode::Opaque))), [0.8, 0.1, 0.4]);
+        // Coverage 1/4 before black.
+        assert_eq!(draw(&wall(unlit(AlphaMode::Blend))), [0.2, 0.025, 0.1]);
+        assert_eq!(draw(&wall(unlit(AlphaMode::Mask(0.5)))), [0.0; 3], "a hole");
+        let bare = Material { base_color_texture: Some(slot()), ..unlit(AlphaMode::Opaque) };
+        let half = textured(bare, 1, vec![[255, 0, 188, 255]], Wrap::Clamp);
+        let expected = [0.8, 0.0, 0.4 * ((188.0f32 / 255.0 + 0.055) / 1.055).powf(2.4)];
+        assert!(distance(draw(&half), expected) < 1e-6, "{:?}", draw(&half));
+    }
+}
+
+#[test]
+fn unlit_can_fail() {
+    let lit = wall(Material { base_color: [0.8, 0.1, 0.4, 1.0], ..white() });
+    let drawn = render(&lit, &Environment::constant([7.0; 3]), &frame()).expect("a sound scene and frame").linear[100];
+    assert!(drawn[0] > 2.0, "the same wall lit is bright: {drawn:?}");
+}

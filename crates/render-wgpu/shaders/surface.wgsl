@@ -30,6 +30,8 @@ override masked: bool = false;
 override blended: bool = false;
 // Alpha is coverage.
 override fades: bool = false;
+// The base colour is shown as it is, whatever the light.
+override unlit: bool = false;
 
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
@@ -130,11 +132,16 @@ fn glow(uv: vec4<f32>) -> vec3<f32> {
 
 // Premultiplied: the share (1 - alpha) of what lies behind is added by the blend stage.
 fn composite(point: Point, lit: vec3<f32>, specular: vec3<f32>, emission: vec3<f32>) -> vec4<f32> {
-    let diffuse = max(lit, vec3<f32>(0.0)) * point.base.rgb * (1.0 - point.metallic);
+    var diffuse = max(lit, vec3<f32>(0.0)) * point.base.rgb * (1.0 - point.metallic);
+    var gloss = specular + emission;
+    if unlit {
+        diffuse = point.base.rgb;
+        gloss = vec3<f32>(0.0);
+    }
     if blended {
         let coverage = select(1.0, saturate(point.base.a), fades);
         let alpha = coverage * (1.0 - material.transmission);
-        return vec4<f32>(storable(alpha * diffuse + coverage * (specular + emission)), alpha);
+        return vec4<f32>(storable(alpha * diffuse + coverage * gloss), alpha);
     }
-    return vec4<f32>(storable(diffuse + specular + emission), 1.0);
+    return vec4<f32>(storable(diffuse + gloss), 1.0);
 }

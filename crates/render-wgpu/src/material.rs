@@ -18,6 +18,8 @@ pub(crate) struct Variant {
     pub(crate) fades: bool,
     /// Drawn over what lies behind.
     pub(crate) blended: bool,
+    /// The base colour is shown as it is.
+    pub(crate) unlit: bool,
     pub(crate) base_textured: bool,
     pub(crate) metallic_roughness_textured: bool,
     pub(crate) normal_textured: bool,
@@ -37,10 +39,11 @@ impl Variant {
     pub(crate) fn of(material: &Material, has_tangents: bool) -> Self {
         let fades = material.alpha == AlphaMode::Blend;
         Self {
-            shiny: material.specular,
+            shiny: material.specular && !material.unlit,
             masked: matches!(material.alpha, AlphaMode::Mask(_)),
             fades,
             blended: fades || material.transmission > 0.0,
+            unlit: material.unlit,
             base_textured: material.base_color_texture.is_some(),
             metallic_roughness_textured: material.metallic_roughness_texture.is_some(),
             normal_textured: material.specular && has_tangents && material.normal_texture.is_some(),
@@ -63,6 +66,7 @@ impl Variant {
             ("masked", self.masked),
             ("blended", self.blended),
             ("fades", self.fades),
+            ("unlit", self.unlit),
         ]
         .map(|(name, on)| (name, f64::from(u8::from(on))));
         let product = |way| way != GlossWay::Cache;
@@ -244,6 +248,7 @@ mod tests {
         assert_eq!(parts(&Material { alpha: AlphaMode::Blend, ..matt() }, true), ["sorted", "blended", "fades"]);
         assert_eq!(parts(&Material { transmission: 0.5, ..matt() }, true), ["sorted", "blended"]);
         assert_eq!(parts(&Material { emissive_texture: slot, ..matt() }, true), ["glow_textured"]);
+        assert_eq!(parts(&Material { unlit: true, specular: true, ..matt() }, true), ["unlit"]);
         assert!(parts(&bumpy, true).is_empty(), "a normal map bends nothing where nothing shines and no map lies");
         assert_eq!(parts(&Material { normal_texture: slot, ..shiny.clone() }, true), ["shiny", "normal_textured"]);
         assert_eq!(parts(&Material { normal_texture: slot, ..shiny }, false), ["shiny"], "nor without tangents");

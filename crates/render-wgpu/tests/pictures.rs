@@ -212,3 +212,17 @@ fn without_a_driver_the_error_says_what_to_do() {
     assert!(said.contains("no GPU adapter was found"), "{said}");
     assert!(said.contains("apt install mesa-vulkan-drivers"), "{said}");
 }
+
+/// Unlit materials, textured, masked and blended, are those of the CPU; and differ from lit ones.
+#[test]
+fn unlit_materials_agree_with_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let (environment, lit, frame) = (environment(), sphere_on_plane(3, 24), Frame::plain(camera(), 192, 128));
+    let mut unlit = lit.clone();
+    unlit.materials.iter_mut().for_each(|material| material.unlit = true);
+    let picture = render_wgpu::render(&gpu, &unlit, &environment, &frame).expect("a picture");
+    let same = distance(&picture, &cpu_picture(&unlit, &environment, &frame));
+    assert!(same.is_small(), "{same:?}");
+    let other = distance(&picture, &cpu_picture(&lit, &environment, &frame));
+    assert!(!other.is_small(), "can fail: a lit scene must be noticed: {other:?}");
+}

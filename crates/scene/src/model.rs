@@ -7,6 +7,9 @@ use glam::{Affine2, Vec2, Vec3, Vec4};
 pub struct Scene {
     /// What the user called it: a file path or `builtin:NAME`.
     pub name: String,
+    /// World coordinates, metres, of the point that all positions here are relative to: zero unless the file's
+    /// geometry lies so far from its origin that f32 would lose digits.
+    pub origin: [f64; 3],
     /// One per primitive of each instance.
     pub meshes: Vec<Mesh>,
     /// Referred to by [`Mesh::material`]; never empty where there is a mesh.
@@ -30,7 +33,7 @@ pub struct Mesh {
     pub name: String,
     /// Index into [`Scene::materials`].
     pub material: u32,
-    /// World space, metres.
+    /// World space, metres, relative to [`Scene::origin`].
     pub positions: Vec<Vec3>,
     /// Unit shading normals; never empty after loading.
     pub normals: Vec<Vec3>,
@@ -75,6 +78,9 @@ pub struct Material {
     pub double_sided: bool,
     /// Share of light that passes through (KHR_materials_transmission).
     pub transmission: f32,
+    /// Whether the camera sees the base colour as radiance, whatever the light (KHR_materials_unlit). Other surfaces
+    /// see a matte surface of the base colour.
+    pub unlit: bool,
 }
 
 impl Default for Material {
@@ -93,6 +99,7 @@ impl Default for Material {
             alpha: AlphaMode::Opaque,
             double_sided: false,
             transmission: 0.0,
+            unlit: false,
         }
     }
 }
@@ -150,7 +157,7 @@ pub enum Wrap {
 pub struct Camera {
     /// Name in the file.
     pub name: String,
-    /// Where it stands, metres.
+    /// Where it stands, metres, relative to [`Scene::origin`].
     pub eye: Vec3,
     /// A point that it looks at.
     pub target: Vec3,
@@ -167,7 +174,7 @@ pub struct PunctualLight {
     pub name: String,
     /// Kind with its own data.
     pub kind: LightKind,
-    /// World position, metres.
+    /// World position, metres, relative to [`Scene::origin`].
     pub position: Vec3,
     /// Direction in which it shines, unit.
     pub direction: Vec3,

@@ -77,15 +77,21 @@ impl Pictures<'_> {
                 self.place(normal.index, set.unwrap_or(normal.tex_coord), transform)
             }),
             normal_scale: json.normal_texture.as_ref().map_or(1.0, |n| n.scale),
-            emissive: Vec3::from(json.emissive_factor.0).max(Vec3::ZERO) * strength.max(0.0),
-            emissive_texture: json.emissive_texture.as_ref().map(|info| self.slot(info)),
+            // KHR_materials_unlit: the base colour is all that is shown.
+            emissive: if unlit {
+                Vec3::ZERO
+            } else {
+                Vec3::from(json.emissive_factor.0).max(Vec3::ZERO) * strength.max(0.0)
+            },
+            emissive_texture: json.emissive_texture.as_ref().filter(|_| !unlit).map(|info| self.slot(info)),
             alpha: match json.alpha_mode {
                 Checked::Valid(JsonAlpha::Mask) => AlphaMode::Mask(cutoff),
                 Checked::Valid(JsonAlpha::Blend) => AlphaMode::Blend,
                 _ => AlphaMode::Opaque,
             },
             double_sided: json.double_sided,
-            transmission: transmission.map_or(0.0, |t| t.transmission_factor.0.clamp(0.0, 1.0)),
+            transmission: transmission.filter(|_| !unlit).map_or(0.0, |t| t.transmission_factor.0.clamp(0.0, 1.0)),
+            unlit,
             name,
         }
     }

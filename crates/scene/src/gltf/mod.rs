@@ -31,6 +31,7 @@ pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
     let placed = node::place(&document, &primitives, &mut report)?;
     Ok(Scene {
         name: file.display().to_string(),
+        origin: [0.0; 3],
         meshes: placed.meshes,
         materials,
         textures,
