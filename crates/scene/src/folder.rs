@@ -37,6 +37,16 @@ pub(crate) fn read_file(path: &Path) -> std::io::Result<Vec<u8>> {
     fs::read(path)
 }
 
+/// What stands after the last `/` or `\`.
+pub(crate) fn bare(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+/// What stands before it, with it.
+pub(crate) fn folder_of(path: &str) -> &str {
+    &path[..path.len() - bare(path).len()]
+}
+
 /// The folder of a scene file.
 #[derive(Debug)]
 pub(crate) struct Folder(PathBuf);
@@ -51,6 +61,43 @@ impl Folder {
     pub(crate) fn read(&self, relative: &str) -> Result<Vec<u8>, Missing> {
         let path = self.resolve(relative).map_err(Missing::Refused)?;
         read_file(&path).map_err(|error| Missing::Io(path, error))
+    }
+
+    /// Looks for a file as programs that write OBJ mean it: at its path, from the folder `near` of the file that names
+    /// it or from this folder, else by its bare name in either; last with other capitals. Gives its path and content.
+    pub(crate) fn find(&self, near: &str, path: &str) -> Result<(String, Vec<u8>), Missing> {
+        let bare = bare(path);
+        let places = [format!("{near}{path}"), path.to_owned(), format!("{near}{bare}"), bare.to_owned()];
+        let mut first = None;
+        for place in &places {
+            match self.read(place) {
+                Ok(bytes) => return Ok((place.replace('\\', "/"), bytes)),
+                Err(missing) => first.get_or_insert(missing),
+            };
+        }
+        for place in &places {
+            if let Some(found) = self.any_case(place)
+                && let Ok(bytes) = self.read(&found)
+            {
+                return Ok((found, bytes));
+            }
+        }
+        Err(first.unwrap_or_else(|| Missing::Refused(format!("{path:?} is not a file name"))))
+    }
+
+    /// The path with the capitals that the files have: names written where capitals do not matter.
+    fn any_case(&self, relative: &str) -> Option<String> {
+        self.resolve(relative).ok()?;
+        let mut found = String::new();
+        for part in relative.replace('\\', "/").split('/').filter(|part| !matches!(*part, "" | ".")) {
+            let entries = fs::read_dir(self.0.join(&found)).ok()?;
+            let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+            // The first in order, since folders list theirs in any.
+            let name = names.filter(|name| part == ".." || name.eq_ignore_ascii_case(part)).min();
+            let name = if part == ".." { "..".to_owned() } else { name? };
+            found = if found.is_empty() { name } else { format!("{found}/{name}") };
+        }
+        Some(found)
     }
 
     /// The path of a relative reference; refuses URLs, absolute paths and paths that leave the folder.

@@ -13,7 +13,8 @@ const UNIT_TOLERANCE: f32 = 0.02;
 /// Within a smooth group around a vertex (triangles joined by edges whose dihedral angle has a cosine of at least
 /// `crease_cosine`), the normal is the mean of the face normals weighted by the angle at the vertex
 /// (Thuermer and Wuethrich 1998). Positions that coincide count as one vertex, whatever their other attributes.
-pub(crate) fn generate(mesh: &mut Mesh, crease_cosine: f64) {
+/// Gives for each vertex of the result which one it was.
+pub(crate) fn generate(mesh: &mut Mesh, crease_cosine: f64) -> Vec<u32> {
     let (_, welded) = weld(mesh.positions.iter().copied());
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(|t| t.map(|i| welded[i as usize])).collect();
     let faces: Vec<DVec3> = (0..mesh.triangles.len()).map(|t| face_normal(mesh, t)).collect();
@@ -36,11 +37,22 @@ pub(crate) fn generate(mesh: &mut Mesh, crease_cosine: f64) {
         // Faces of a group that cancel out leave each its own normal.
         let fallback = faces[corner as usize / 3];
         (root, sums[root as usize].try_normalize().unwrap_or(fallback).as_vec3())
-    });
+    })
+}
+
+/// Replaces the normals of the `missing` vertices by those that [`generate`] makes; the others stay.
+pub(crate) fn complete(mesh: &mut Mesh, missing: &[bool], crease_cosine: f64) {
+    let given = std::mem::take(&mut mesh.normals);
+    let old = generate(mesh, crease_cosine);
+    for (normal, old) in mesh.normals.iter_mut().zip(old) {
+        if !missing[old as usize] {
+            *normal = given[old as usize];
+        }
+    }
 }
 
 /// One vertex per pair of old vertex and smooth group, with that group's normal.
-fn split(mesh: &mut Mesh, mut group_of: impl FnMut(u32) -> (u32, Vec3)) {
+fn split(mesh: &mut Mesh, mut group_of: impl FnMut(u32) -> (u32, Vec3)) -> Vec<u32> {
     let mut made = std::collections::HashMap::new();
     let (mut kept, mut normals) = (Vec::new(), Vec::new());
     for t in 0..mesh.triangles.len() {
@@ -57,6 +69,7 @@ fn split(mesh: &mut Mesh, mut group_of: impl FnMut(u32) -> (u32, Vec3)) {
     mesh.normals.clear();
     vertices::select(mesh, &kept);
     mesh.normals = normals;
+    kept
 }
 
 /// Makes given normals unit; those that are zero, not finite or far from unit length are counted, and those without

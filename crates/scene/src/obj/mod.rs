@@ -1,82 +1,123 @@
 //! Loading OBJ and MTL.
 //!
-//! The crate `tobj` parses; before it sees a byte, [`check`] and [`mtl`] refuse with a line number, or mend with a
-//! warning, what it would misread or panic on. Lengths are taken as they are, as metres.
+//! Both have many dialects: what cannot be misunderstood is read, what has a meaning but is not supported is told,
+//! and only what leaves no shape is refused, with its line. Lengths are taken as they are, as metres.
 
-mod check;
+mod library;
+mod map;
 mod mtl;
+mod parse;
 mod polygon;
 mod solid;
+mod text;
 
-use std::cell::RefCell;
+use std::collections::HashMap;
 use std::path::Path;
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 
 use crate::folder::Folder;
-use crate::{Error, Mesh, Report, Scene, Warning};
+use crate::repair::SMOOTH_CREASE;
+use crate::{Error, Mesh, Report, Scene, Warning, normals};
+use parse::{Content, Corner, Group, NONE};
 
 /// Reads an OBJ file; `bytes` are its content.
 pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
     let mut report = Report::default();
-    let text = check::clean(file, &String::from_utf8_lossy(bytes), &mut report)?;
+    let content = parse::parse(file, &text::decode(bytes), &mut report)?;
     let folder = Folder::of(file);
-    let libraries = RefCell::new(Vec::new());
-    let options = tobj::LoadOptions { single_index: true, ..tobj::LoadOptions::default() };
-    let (models, materials) = tobj::load_obj_buf(&mut text.as_bytes(), &options, |name| {
-        mtl::library(&folder, &name.to_string_lossy(), &mut libraries.borrow_mut())
-    })
-    .map_err(|error| Error::invalid(file, "OBJ statements", error.to_string()))?;
-    report.warnings.extend(libraries.into_inner());
-    let materials = materials.unwrap_or_default();
-    check::warn_of_unknown_materials(&text, &materials, &mut report);
-    let (materials, textures) = mtl::convert(&materials, &folder, &mut report);
+    let library = library::read(&folder, file, &content.libraries, &mut report);
+    let (materials, textures) = mtl::convert(&library.materials, &folder, &mut report);
     let default_material = materials.len() as u32 - 1;
-    let faced = models.iter().filter(|model| !model.mesh.indices.is_empty());
-    let meshes = faced.map(|model| mesh(model, default_material, &mut report)).collect();
+    let mut unknown = Vec::new();
+    let mut lacking = Lacking::default();
+    let mut meshes = Vec::with_capacity(content.groups.len());
+    for group in &content.groups {
+        let used = group.material.as_deref();
+        let material = used.and_then(|name| library.find(name));
+        if let (Some(name), None) = (used, material)
+            && !unknown.contains(&name)
+        {
+            unknown.push(name);
+        }
+        let mut mesh = mesh(&content, group, &mut lacking);
+        mesh.material = material.map_or(default_material, |i| i as u32);
+        meshes.push(mesh);
+    }
+    lacking.tell(&mut report);
+    parse::warn_of_unknown(&unknown, &mut report);
     let mut scene = Scene { name: file.display().to_string(), meshes, materials, textures, report, ..Scene::default() };
     solid::mark_double_sided(&mut scene);
     Ok(scene)
 }
 
-/// One model (an object or group with one material) as a mesh of triangles.
-fn mesh(model: &tobj::Model, default_material: u32, report: &mut Report) -> Mesh {
-    let source = &model.mesh;
-    let (triples, _) = source.positions.as_chunks::<3>();
-    let positions: Vec<Vec3> = triples.iter().map(|p| Vec3::from(*p)).collect();
-    let count = positions.len();
-    // Corners of one model may lack coordinates or normals that others have; then the parser's lists are short and
-    // nobody knows whose they are.
-    let mut whole = |values: usize, what: &str| {
-        if values != 0 && values != count {
-            let message = format!("only some corners have {what}; all were dropped");
-            report.warnings.push(Warning { object: model.name.clone(), message });
-        }
-        values == count
-    };
-    let (normals, _) = source.normals.as_chunks::<3>();
-    let (coordinates, _) = source.texcoords.as_chunks::<2>();
-    let (colors, _) = source.vertex_color.as_chunks::<3>();
-    let has_normals = whole(normals.len(), "normals");
-    let has_coordinates = whole(coordinates.len(), "texture coordinates");
-    let has_colors = whole(colors.len(), "colours");
-    Mesh {
-        name: model.name.clone(),
-        material: source.material_id.map_or(default_material, |i| i as u32),
-        normals: if has_normals { normals.iter().map(|n| Vec3::from(*n)).collect() } else { Vec::new() },
+/// Vertices that lack coordinates or normals which others of their mesh have.
+#[derive(Debug, Default)]
+struct Lacking {
+    coordinates: usize,
+    normals: usize,
+}
+
+impl Lacking {
+    fn tell(&self, report: &mut Report) {
+        let mut warn = |count: usize, message: String| {
+            if count > 0 {
+                report.warnings.push(Warning { object: "faces".into(), message });
+            }
+        };
+        let (coordinates, normals) = (self.coordinates, self.normals);
+        let lack = "corners have none while others of their mesh do";
+        warn(coordinates, format!("texture coordinates: {coordinates} {lack}; (0, 0) is used"));
+        warn(normals, format!("normals: {normals} {lack}; theirs were made from the faces"));
+    }
+}
+
+/// One group as a mesh of triangles; vertices in the order in which faces name them.
+fn mesh(content: &Content, group: &Group, lacking: &mut Lacking) -> Mesh {
+    let mut number: HashMap<Corner, u32> = HashMap::new();
+    let mut vertices: Vec<Corner> = Vec::new();
+    let indices: Vec<u32> = group
+        .corners
+        .iter()
+        .map(|corner| {
+            *number.entry(*corner).or_insert_with(|| {
+                vertices.push(*corner);
+                vertices.len() as u32 - 1
+            })
+        })
+        .collect();
+    let positions: Vec<Vec3> = vertices.iter().map(|v| content.positions[v[0] as usize].as_vec3()).collect();
+    let without = |kind: usize| vertices.iter().filter(|v| v[kind] == NONE).count();
+    let coordinates = attribute(&vertices, 1, |i| content.coordinates[i], Vec2::ZERO);
+    let normals = attribute(&vertices, 2, |i| content.normals[i], Vec3::ZERO);
+    let colors = |v: &Corner| content.colors.get(v[0] as usize).map(|c| c.extend(1.0));
+    let triangles_only = group.arities.iter().all(|arity| *arity == 3);
+    let arities: &[u32] = if triangles_only { &[] } else { &group.arities };
+    let mut mesh = Mesh {
+        name: group.name.clone(),
+        triangles: polygon::triangulate(&positions, &indices, arities),
         // The rows of a picture run downwards here and upwards in OBJ.
-        uv0: if has_coordinates {
-            coordinates.iter().map(|[u, v]| Vec2::new(*u, 1.0 - v)).collect()
-        } else {
-            Vec::new()
-        },
-        colors: if has_colors {
-            colors.iter().map(|c| Vec3::from(*c).extend(1.0)).collect()
-        } else {
-            Vec::<Vec4>::new()
-        },
-        triangles: polygon::triangulate(&positions, &source.indices, &source.face_arities),
+        uv0: coordinates.into_iter().map(|uv| Vec2::new(uv.x, 1.0 - uv.y)).collect(),
+        normals,
+        colors: vertices.iter().filter_map(colors).collect(),
         positions,
         ..Mesh::default()
+    };
+    if !mesh.uv0.is_empty() {
+        lacking.coordinates += without(1);
     }
+    if !mesh.normals.is_empty() && without(2) > 0 {
+        lacking.normals += without(2);
+        let missing: Vec<bool> = vertices.iter().map(|v| v[2] == NONE).collect();
+        normals::complete(&mut mesh, &missing, SMOOTH_CREASE);
+    }
+    mesh
+}
+
+/// The values of one attribute, `unsaid` where a vertex has none; empty where no vertex has one.
+fn attribute<T: Copy>(vertices: &[Corner], kind: usize, value: impl Fn(usize) -> T, unsaid: T) -> Vec<T> {
+    if vertices.iter().all(|v| v[kind] == NONE) {
+        return Vec::new();
+    }
+    vertices.iter().map(|v| if v[kind] == NONE { unsaid } else { value(v[kind] as usize) }).collect()
 }

@@ -16,6 +16,7 @@ impl Folder {
     /// Writes a file and gives its path.
     pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.0.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a made folder");
         std::fs::write(&path, content).expect("a written file");
         path
     }
