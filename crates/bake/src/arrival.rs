@@ -249,7 +249,7 @@ impl<'a> Arrivals<'a> {
     fn sent(&self, hit: &Hit, direction: Vec3, out: &mut [f32]) -> bool {
         out.fill(0.0);
         let world = self.gatherer.world;
-        let albedo = world.albedo(hit.triangle, hit.u, hit.v).to_array();
+        let albedo = world.sent(hit).to_array();
         let scatters = albedo != [0.0; 3];
         if scatters {
             self.add_scattered(hit, albedo, None, out);

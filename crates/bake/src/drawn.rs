@@ -1,8 +1,9 @@
 //! Rows of the effects that follow from the materials: they cost no rays of their own.
 
-use crate::material::{DIELECTRIC, Facts as Material};
+use crate::material::Facts as Material;
 use crate::rows::{Table, Words, percent};
 use coeff_io::{Effect, PlanRow};
+use sh_math::brdf::DIELECTRIC;
 
 /// Largest value of a fact over all materials.
 fn largest(table: &Table<'_>, value: impl Fn(&Material) -> f32) -> f32 {

@@ -309,10 +309,8 @@ impl Gatherer<'_> {
             return;
         }
         let found = blockers.found;
-        let weighed: Vec<(Hit, Vec3)> = found
-            .iter()
-            .map(|(_, hit, weight)| (*hit, self.world.albedo(hit.triangle, hit.u, hit.v) * *weight))
-            .collect();
+        let weighed: Vec<(Hit, Vec3)> =
+            found.iter().map(|(_, hit, weight)| (*hit, self.world.sent(hit) * *weight)).collect();
         if index < self.permanent && !crate::repair::is_inside(out.openness, out.inside_share) {
             out.near = near_points(self.world, &weighed, self.worth);
         }

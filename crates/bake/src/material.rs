@@ -3,13 +3,12 @@
 use crate::albedo::{Albedo, Colors};
 use glam::Vec4;
 use scene::{AlphaMode, Material, Scene};
+use sh_math::brdf::DIELECTRIC;
 
 /// Perceptual roughness below which a dielectric shows a reflection that is worth drawing.
 const SHINY: f32 = 0.6;
 /// Metallic share above which a surface shows a reflection.
 const METALLIC: f32 = 0.05;
-/// Reflectance of dielectrics at normal incidence (an index of refraction of 1.5).
-pub(crate) const DIELECTRIC: f32 = 0.04;
 
 /// Bounds over a whole material. A material that no triangle shows does nothing.
 #[derive(Debug, Clone, Copy)]

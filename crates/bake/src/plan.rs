@@ -6,7 +6,7 @@ use crate::facts::Facts;
 use crate::receivers::Receivers;
 use crate::rows;
 use crate::survey::{open_norms, survey};
-use crate::world::World;
+use crate::world::{Shine, World};
 use crate::{Error, settings};
 use coeff_io::{BandChoice, Bounces, Effect, Effects, MeshPlan, Plan, Quality, Settings, Survey};
 use scene::Scene;
@@ -44,7 +44,17 @@ pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings, extras: &Extras
     };
     let survey = survey(&world, &receivers.list, &traced, settings)?;
     let plan = decide(&facts, survey, traced.len() as u64, settings);
+    world.shine = shine(&facts, &plan);
     Ok(Prepared { world, receivers, plan, traced })
+}
+
+/// What becomes of mirrored light of each material under a plan.
+fn shine(facts: &Facts, plan: &Plan) -> Vec<Shine> {
+    if !simulates(plan, Effect::Specular) {
+        return Vec::new();
+    }
+    let shiny = if simulates(plan, Effect::Glossy) { Shine::Direction } else { Shine::Mean };
+    facts.materials.iter().map(|material| if material.shines { shiny } else { Shine::Matte }).collect()
 }
 
 /// The scene as rays meet it under the settings.

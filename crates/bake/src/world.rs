@@ -4,8 +4,9 @@ use crate::Error;
 use crate::hit::NearPoint;
 use crate::receivers::Receiver;
 use glam::Vec3;
-use raytrace::Tracer;
+use raytrace::{Hit, Tracer};
 use scene::{AlphaMode, Scene};
+use sh_math::brdf::{DIELECTRIC, MEAN_DIFFUSE_LOSS, mean_environment_brdf};
 
 /// Bits 30 and 31 of a packed triangle say what was hit of it.
 const MAX_TRIANGLES: usize = (1 << 30) - 1;
@@ -24,6 +25,19 @@ pub(crate) struct World<'a> {
     has_masks: bool,
     /// Whether rays are traced even for receivers that nothing stands above.
     pub(crate) trace_all: bool,
+    /// Of each material; empty where all are matte.
+    pub(crate) shine: Vec<Shine>,
+}
+
+/// What becomes of light that a material mirrors, on its way to other surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shine {
+    /// It mirrors none.
+    Matte,
+    /// It goes to all sides. A metal's is left out.
+    Mean,
+    /// Fronts mirror it.
+    Direction,
 }
 
 impl<'a> World<'a> {
@@ -41,6 +55,7 @@ impl<'a> World<'a> {
             sources: Vec::new(),
             has_masks: false,
             trace_all: false,
+            shine: Vec::new(),
         };
         let mut positions: Vec<Vec3> = Vec::new();
         let mut masked = Vec::new();
@@ -96,10 +111,24 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Diffuse albedo at a point of a traced triangle, linear, in [0, 1].
-    pub(crate) fn albedo(&self, triangle: u32, u: f32, v: f32) -> Vec3 {
-        let (mesh, local) = self.locate(triangle);
-        self.scene.albedo(mesh, local, u, v)
+    /// Share of the light at a hit that the surface sends on to all sides, linear: its albedo; where it shines less what its mirror takes, and
+    /// more by what the mirror of a dielectric returns on its mean where that is not sent by direction.
+    pub(crate) fn sent(&self, hit: &Hit) -> Vec3 {
+        let (mesh, local) = self.locate(hit.triangle);
+        let albedo = self.scene.albedo(mesh, local, hit.u, hit.v);
+        let shine = self.shine.get(self.scene.meshes[mesh].material as usize).copied().unwrap_or(Shine::Matte);
+        let by_direction = match shine {
+            Shine::Matte => return albedo,
+            Shine::Mean => false,
+            Shine::Direction => hit.front,
+        };
+        let body = albedo * (1.0 - MEAN_DIFFUSE_LOSS);
+        if by_direction {
+            return body;
+        }
+        let [metallic, roughness] = self.scene.shine(mesh, local, hit.u, hit.v);
+        let [scale, bias] = mean_environment_brdf(roughness);
+        body + (1.0 - metallic) * (DIELECTRIC * scale + bias)
     }
 
     /// Whether the back of a triangle is a real surface rather than the inside of a body.

@@ -26,7 +26,7 @@ pub enum Mirroring {
     Microfacet,
 }
 
-/// What surfaces mirror besides their diffuse part, which gives up nothing for it.
+/// What surfaces mirror; of a dielectric's light the diffuse part below gets what the mirror leaves, as glTF 2.0 has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gloss {
     /// The model.

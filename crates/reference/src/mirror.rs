@@ -31,6 +31,8 @@ pub(crate) struct Polish {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Mirror {
     facing: Vec3,
+    /// Unit, to the eye.
+    view: Vec3,
     /// Share of a white sky that is mirrored, of a table.
     pub(crate) albedo: Vec3,
     shape: Shape,
@@ -72,7 +74,7 @@ impl Mirror {
                 Shape::Microfacet { facets: Facets::new(alpha, frame.to_local(view)), frame, f0 }
             }
         };
-        Self { facing, albedo, shape }
+        Self { facing, view, albedo, shape }
     }
 
     /// BRDF times cosine for light from a unit direction, and the density with which [`Self::sample`] draws it. Nothing comes from
@@ -89,6 +91,13 @@ impl Mirror {
             }
         };
         if self.facing.dot(direction) > 0.0 { (reflected, pdf) } else { (Vec3::ZERO, pdf) }
+    }
+
+    /// Share of light from a unit direction that is left for the diffuse part below: glTF 2.0, appendix B, mixes by Schlick's term of a
+    /// dielectric at the half vector. A metal has no such part.
+    pub(crate) fn transmitted(&self, direction: Vec3) -> f32 {
+        let half = (self.view + direction).normalize_or(self.facing);
+        (1.0 - DIELECTRIC) * (1.0 - schlick(self.view.dot(half)))
     }
 
     /// A direction of light, unit.

@@ -123,7 +123,8 @@ impl<'a> Parts<'a> {
     fn at(&self, direction: Vec3) -> (Vec3, f32) {
         let (mirrored, pdf) = self.mirror.at(direction);
         let cosine = self.surface.normal.dot(direction).max(0.0) * FRAC_1_PI;
-        let matte = if self.surface.is_below(direction) { 0.0 } else { cosine };
+        let below = self.surface.is_below(direction);
+        let matte = if below { 0.0 } else { cosine * self.mirror.transmitted(direction) };
         (self.surface.albedo * matte + mirrored, self.chance * pdf + (1.0 - self.chance) * cosine)
     }
 

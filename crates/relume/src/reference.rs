@@ -202,6 +202,7 @@ fn noise(picture: &Picture) -> f64 {
 mod tests {
     use super::*;
     use reference::directional_albedo;
+    use sh_math::brdf;
 
     /// The polynomials of the renderers against the integral that the reference sums up by itself.
     #[test]
@@ -210,7 +211,7 @@ mod tests {
             let mut most = 0.0f32;
             for k in 0..400 {
                 let (roughness, cosine) = (0.05 + 0.05 * (k % 20) as f32, 0.05 + 0.05 * (k / 20) as f32);
-                let [a, b] = lobe::environment_brdf((roughness * scale).min(1.0), cosine.min(1.0));
+                let [a, b] = brdf::environment_brdf((roughness * scale).min(1.0), cosine.min(1.0));
                 for f0 in [0.04, 0.5, 1.0] {
                     let truth = directional_albedo(Vec3::splat(f0), roughness.min(1.0), cosine.min(1.0)).x;
                     most = most.max((f0 * a + b - truth).abs());
@@ -218,8 +219,9 @@ mod tests {
             }
             most
         };
-        assert!(apart(1.0) < 0.06, "{}", apart(1.0));
-        assert!(apart(0.7) > 0.06, "another roughness must show: {}", apart(0.7));
+        // At a cosine of 0.05 the fit is worst; from 0.1 on it is within 0.006.
+        assert!(apart(1.0) < 0.02, "{}", apart(1.0));
+        assert!(apart(0.9) > 0.02, "another roughness must show: {}", apart(0.9));
     }
 
     #[test]

@@ -1,10 +1,8 @@
 //! How much of a prefiltered reflection a surface returns.
 
 use glam::Vec3;
-pub use sh_math::lobe::environment_brdf;
-
-/// Normal reflectance of dielectrics: refractive index 1.5.
-const DIELECTRIC: f32 = 0.04;
+use sh_math::brdf::DIELECTRIC;
+pub use sh_math::brdf::environment_brdf;
 
 /// Share of the reflection that is returned, per channel.
 pub(crate) fn reflectance(base: Vec3, metallic: f32, roughness: f32, cosine: f32) -> Vec3 {

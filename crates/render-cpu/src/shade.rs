@@ -9,6 +9,7 @@ use coeff_io::{AlphaMode, Material, Prt, TextureSlot};
 use glam::{Quat, Vec3, Vec4};
 use probe_io::Environment;
 use probe_io::reflection::Reflection;
+use sh_math::brdf::diffuse_loss;
 use std::ops::{Add, Mul};
 
 /// Everything that the colour of a sample depends on.
@@ -67,6 +68,8 @@ struct Finish {
     color: Vec3,
     metallic: f32,
     roughness: f32,
+    /// Diffuse radiance for albedo 1.
+    scattered: Vec3,
 }
 
 impl Surface {
@@ -115,16 +118,17 @@ impl Shader<'_> {
         let metallic = if self.albedo { (material.metallic * shine.z).clamp(0.0, 1.0) } else { 0.0 };
         let roughness = (material.roughness * shine.y).clamp(0.0, 1.0);
         let taps = self.taps(place);
-        let diffuse = self.light(place, taps.as_ref()).max(Vec3::ZERO) * color * (1.0 - metallic);
+        let scattered = self.light(place, taps.as_ref()).max(Vec3::ZERO);
         let glow = self.texel(material.emissive_texture.as_ref(), place, Encoding::Srgb(self.srgb)).truncate();
         let emission = Vec3::from(material.emissive) * glow;
-        let specular = match self.reflection {
+        let (specular, kept) = match self.reflection {
             Some(reflection) if material.specular => {
-                let finish = Finish { color, metallic, roughness };
+                let finish = Finish { color, metallic, roughness, scattered };
                 self.specular(place, reflection, &finish, taps.as_ref())
             }
-            _ => Vec3::ZERO,
+            _ => (Vec3::ZERO, 1.0),
         };
+        let diffuse = scattered * color * ((1.0 - metallic) * kept);
         Surface { diffuse, gloss: specular + emission, coverage, opacity }
     }
 
@@ -174,7 +178,14 @@ impl Shader<'_> {
         })
     }
 
-    fn specular(&self, place: &Place<'_>, reflection: &Reflection, finish: &Finish, taps: Option<&Taps>) -> Vec3 {
+    /// What is mirrored, and the share of diffuse light that the mirror leaves.
+    fn specular(
+        &self,
+        place: &Place<'_>,
+        reflection: &Reflection,
+        finish: &Finish,
+        taps: Option<&Taps>,
+    ) -> (Vec3, f32) {
         let normal = self.normal(place);
         let to_eye = -place.direction.normalize();
         let cosine = normal.dot(to_eye);
@@ -191,9 +202,22 @@ impl Shader<'_> {
                 let ray = Ray { mirrored, smooth: self.smooth(place), roughness };
                 (gloss.mirrored(&ray, &light, arrived), roughness)
             }
-            _ => (light.along(mirrored, finish.roughness) * self.occlusion(place), finish.roughness),
+            _ => (self.half_open(place, &light, mirrored, finish), finish.roughness),
         };
-        radiance * reflectance(finish.color, finish.metallic, roughness, cosine.abs().min(1.0))
+        let cosine = cosine.abs().min(1.0);
+        (radiance * reflectance(finish.color, finish.metallic, roughness, cosine), 1.0 - diffuse_loss(cosine))
+    }
+
+    /// What arrives about the mirror direction where no more is known than how open the surface is: the probe by its open share, and of
+    /// the rest what diffuse light has more than the open share of the probe gives, up to its mean.
+    fn half_open(&self, place: &Place<'_>, light: &Reflected<'_>, mirrored: Vec3, finish: &Finish) -> Vec3 {
+        let open = self.occlusion(place);
+        let sky = light.along(mirrored, finish.roughness) * open;
+        if open >= 1.0 {
+            return sky;
+        }
+        let beyond = finish.scattered - light.along(self.smooth(place), 1.0) * open;
+        sky + beyond.clamp(Vec3::ZERO, finish.scattered * (1.0 - open))
     }
 
     fn occlusion(&self, place: &Place<'_>) -> f32 {

@@ -13,7 +13,14 @@ fn kept_sums(lobe: Lobe, uv: vec2<f32>, level: f32) -> vec4<f32> {
     return sums;
 }
 
-fn specular_light(point: Point, normal: vec3<f32>, plain: vec3<f32>, to_eye: vec3<f32>, at: Shiny) -> vec3<f32> {
+fn specular_light(
+    point: Point,
+    normal: vec3<f32>,
+    plain: vec3<f32>,
+    to_eye: vec3<f32>,
+    at: Shiny,
+    lit: vec3<f32>,
+) -> vec3<f32> {
     var own = point;
     own.roughness = gloss_roughness(point.roughness);
     let cosine = dot(normal, to_eye);

@@ -70,7 +70,8 @@ fn draw_glossy(at: Glossy) -> @location(0) vec4<f32> {
     let mirrored = normalize(2.0 * cosine * normal - to_eye);
     let lobe = lobe_about(mirrored, unit_or(at.normal, geometric), own.roughness);
     let light = mirrored_light(at.gloss, lobe, mirrored, own.roughness);
-    return composite(point, diffuse_light(at.lit.rgb, at.uv), light * returned(own, cosine), glow(at.uv));
+    let lit = max(diffuse_light(at.lit.rgb, at.uv), vec3<f32>(0.0));
+    return composite(point, lit * kept_light(cosine), light * returned(own, cosine), glow(at.uv));
 }
 
 @fragment
@@ -79,6 +80,13 @@ fn cut_glossy(at: Glossy) {
 }
 
 // Mirrored light of fragments of such surfaces is not taken from here.
-fn specular_light(point: Point, normal: vec3<f32>, plain: vec3<f32>, to_eye: vec3<f32>, at: Shiny) -> vec3<f32> {
+fn specular_light(
+    point: Point,
+    normal: vec3<f32>,
+    plain: vec3<f32>,
+    to_eye: vec3<f32>,
+    at: Shiny,
+    lit: vec3<f32>,
+) -> vec3<f32> {
     return vec3<f32>(0.0);
 }

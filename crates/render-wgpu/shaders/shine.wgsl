@@ -42,8 +42,9 @@ fn draw_shiny(at: Shiny) -> @location(0) vec4<f32> {
     // Backs are not drawn, so the geometric normal looks at the eye.
     let geometric = across * select(-1.0, 1.0, dot(across, to_eye) > 0.0);
     let normal = shading_normal(at, geometric);
-    let specular = specular_light(point, normal, unit_or(at.normal, geometric), to_eye, at);
-    return composite(point, diffuse_light(at.lit.rgb, at.uv), specular, glow(at.uv));
+    let lit = max(diffuse_light(at.lit.rgb, at.uv), vec3<f32>(0.0));
+    let specular = specular_light(point, normal, unit_or(at.normal, geometric), to_eye, at, lit);
+    return composite(point, lit * kept_light(dot(normal, to_eye)), specular, glow(at.uv));
 }
 
 // Depth alone: only a mask looks at the surface.
@@ -52,17 +53,16 @@ fn cut_shiny(at: Shiny) {
     _ = surface(at.uv, at.color);
 }
 
-fn mirrored(point: Point, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
-    let cosine = dot(normal, to_eye);
-    let direction = view.light_from_world * (2.0 * cosine * normal - to_eye);
-    return reflected(normalize(direction), point.roughness) * returned(point, cosine);
-}
-
 // Share of mirrored light that is returned.
 fn returned(point: Point, cosine: f32) -> vec3<f32> {
     let f0 = mix(vec3<f32>(0.04), point.base.rgb, point.metallic);
     let albedo = environment_brdf(point.roughness, min(abs(cosine), 1.0));
     return f0 * albedo.x + albedo.y;
+}
+
+// Share of diffuse light that the mirror leaves.
+fn kept_light(cosine: f32) -> f32 {
+    return 1.0 - diffuse_loss(min(abs(cosine), 1.0));
 }
 
 fn shading_normal(at: Shiny, geometric: vec3<f32>) -> vec3<f32> {

@@ -69,7 +69,7 @@ fn place_diffuse(
 fn draw_diffuse(at: Diffuse) -> @location(0) vec4<f32> {
     view_depth = 1.0 / at.clip.w;
     let point = surface(at.uv, at.color);
-    return composite(point, diffuse_light(at.lit, at.uv), vec3<f32>(0.0), glow(at.uv));
+    return composite(point, max(diffuse_light(at.lit, at.uv), vec3<f32>(0.0)), vec3<f32>(0.0), glow(at.uv));
 }
 
 // Depth alone: only a mask looks at the surface.
@@ -130,9 +130,9 @@ fn glow(uv: vec4<f32>) -> vec3<f32> {
     return material.emissive;
 }
 
-// Premultiplied: the share (1 - alpha) of what lies behind is added by the blend stage.
+// Premultiplied: the share (1 - alpha) of what lies behind is added by the blend stage. `lit` is not negative.
 fn composite(point: Point, lit: vec3<f32>, specular: vec3<f32>, emission: vec3<f32>) -> vec4<f32> {
-    var diffuse = max(lit, vec3<f32>(0.0)) * point.base.rgb * (1.0 - point.metallic);
+    var diffuse = lit * point.base.rgb * (1.0 - point.metallic);
     var gloss = specular + emission;
     if unlit {
         diffuse = point.base.rgb;

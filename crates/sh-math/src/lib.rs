@@ -13,6 +13,7 @@
 
 mod bands;
 mod batch;
+pub mod brdf;
 mod double_double;
 mod euler;
 mod evaluate;

@@ -2,7 +2,7 @@
 //!
 //! A lobe `B` has the integral 1 over the sphere, so band 0 of its convolution factors is 1 (\[T\] section 3 has no normalisation). What a
 //! surface mirrors is `sum_lm b_l U_lm Y_lm(R)`, `U` the radiance that arrives and is not blocked, divided by the same sum over the open
-//! hemisphere, [`open_energy`]: a white furnace returns 1 for every roughness and every view.
+//! hemisphere, [`open_energy`]: of a white furnace it receives 1 for every roughness and every view; [`crate::brdf`] says what it returns of that.
 
 use crate::{Bands, legendre, zonal};
 
@@ -130,28 +130,6 @@ pub fn read(table: &[f32], roughness: f32, out: &mut [f32]) {
         let (a, b) = (table[start + l], table[start + count + l]);
         *value = a + blend * (b - a);
     }
-}
-
-/// Rows for 1, 1 - cosine and (1 - cosine)^4, columns for 1, roughness and roughness^2.
-///
-/// Least squares on 24 roughnesses from 0.05 to 1 by 40 cosines from 0.02 to 1, weighted by min(1, cosine / 0.2), to the
-/// integral of GGX with height-correlated Smith shadowing: factor of the normal reflectance F0 in Schlick's formula.
-const SCALE: [[f32; 3]; 3] = [[0.953, 0.517, -1.22], [0.253, -1.658, 1.728], [-1.353, 3.4, -1.725]];
-/// The same for the part of Schlick's formula that does not depend on F0.
-const BIAS: [[f32; 3]; 3] = [[0.015, -0.07, 0.06], [-0.113, 0.504, -0.42], [1.195, -2.859, 1.75]];
-
-/// Scale and bias of the normal reflectance: the GGX BRDF integrated over a white environment.
-///
-/// The split sum of Karis 2013 ("Real Shading in Unreal Engine 4"), as a polynomial; `roughness` is perceptual, `cosine`
-/// that of normal and view.
-pub fn environment_brdf(roughness: f32, cosine: f32) -> [f32; 2] {
-    let grazing = 1.0 - cosine;
-    let rows = [1.0, grazing, (grazing * grazing) * (grazing * grazing)];
-    let polynomial = |table: &[[f32; 3]; 3]| {
-        let row = |[a, b, c]: [f32; 3]| a + roughness * (b + roughness * c);
-        (rows[0] * row(table[0]) + rows[1] * row(table[1]) + rows[2] * row(table[2])).max(0.0)
-    };
-    [polynomial(&SCALE), polynomial(&BIAS)]
 }
 
 /// Points `x = sin^2(t/2)` in [0, 1/2] with weights `D(t/2) cos t dx` of GGX, not normalised.

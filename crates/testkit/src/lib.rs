@@ -2,6 +2,7 @@
 
 pub mod chi2;
 mod data;
+pub mod gltf;
 pub mod image;
 pub mod quadrature;
 mod special;

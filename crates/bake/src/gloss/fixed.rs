@@ -86,7 +86,7 @@ impl<'a> FixedBounces<'a> {
 
     fn send(&self, table: usize, hit: &Hit, direction: Vec3, out: &mut [f32]) -> bool {
         let world = self.done.gatherer.world;
-        let albedo = world.albedo(hit.triangle, hit.u, hit.v).to_array();
+        let albedo = world.sent(hit).to_array();
         out.fill(0.0);
         let corners = world.corners[hit.triangle as usize].map(|c| resolve(c, !hit.front, self.done.receivers));
         for (corner, share) in corners.into_iter().zip([1.0 - hit.u - hit.v, hit.u, hit.v]) {
