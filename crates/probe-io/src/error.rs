@@ -32,6 +32,14 @@ pub enum Error {
         /// What is wrong and where in the file.
         what: String,
     },
+    /// A pixel is infinite or not a number; [`crate::NonFinite::Clamp`] replaces such pixels.
+    #[error("{path}: {what}", path = .path.display())]
+    NotFinite {
+        /// The file.
+        path: PathBuf,
+        /// Which pixel, and what to do.
+        what: String,
+    },
 }
 
 /// The part of an error that does not know the file's name yet.
@@ -41,6 +49,8 @@ pub(crate) enum Fault {
     Unsupported(String),
     /// Bytes that contradict the format.
     Invalid(String),
+    /// Pixels that are infinite or not a number.
+    NotFinite(String),
 }
 
 impl Fault {
@@ -50,6 +60,7 @@ impl Fault {
         match self {
             Fault::Unsupported(what) => Error::Unsupported { path, what },
             Fault::Invalid(what) => Error::Invalid { path, what },
+            Fault::NotFinite(what) => Error::NotFinite { path, what },
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Light probes from files and folders, checked for what radiance may be.
 
 use crate::error::{Error, Fault};
+use crate::nonfinite::{self, NonFinite};
 use crate::picture::{self, Picture};
 use crate::{Environment, Layout, Probe, detect};
 use std::path::{Path, PathBuf};
@@ -15,23 +16,27 @@ pub enum Negatives {
 }
 
 /// How to read a light probe.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct LoadOptions {
     /// Overrides the layout that the file and its shape suggest.
     pub layout: Option<Layout>,
     /// What to do with negative radiance.
     pub negatives: Negatives,
+    /// What to do with pixels that are infinite or not a number.
+    pub non_finite: NonFinite,
+    /// Name of the part or layer of an OpenEXR file; the one that is most likely the picture where nothing is said.
+    pub layer: Option<String>,
 }
 
 impl LoadOptions {
-    /// Layout as detected; negative radiance is refused.
+    /// Layout and layer as detected; what is no radiance is refused.
     pub fn strict() -> LoadOptions {
-        LoadOptions { layout: None, negatives: Negatives::Refuse }
+        LoadOptions { layout: None, negatives: Negatives::Refuse, non_finite: NonFinite::Refuse, layer: None }
     }
 
-    /// Layout as detected; negative radiance becomes 0 with a warning.
+    /// Layout and layer as detected; negative radiance becomes 0 with a warning, what is not finite is refused.
     pub fn lenient() -> LoadOptions {
-        LoadOptions { layout: None, negatives: Negatives::Clamp }
+        LoadOptions { negatives: Negatives::Clamp, ..LoadOptions::strict() }
     }
 }
 
@@ -40,7 +45,7 @@ impl Environment {
     ///
     /// # Errors
     /// Where a file cannot be read or is damaged, its layout cannot be told, or a pixel is negative (unless
-    /// clamped), infinite or not a number.
+    /// clamped), or infinite or not a number (unless clamped).
     pub fn load(path: &Path, options: &LoadOptions) -> Result<(Environment, Vec<String>), Error> {
         let mut warnings = Vec::new();
         let probe = if path.is_dir() {
@@ -55,9 +60,7 @@ impl Environment {
 
 /// Reads one picture and finds its layout.
 fn load_file(path: &Path, options: &LoadOptions, warnings: &mut Vec<String>) -> Result<Probe, Error> {
-    let mut picture = picture::open(path)?;
-    warnings.append(&mut picture.warnings);
-    check_radiance(path, &mut picture, options.negatives, warnings)?;
+    let picture = open(path, options, warnings)?;
     let layout = match options.layout {
         Some(layout) => layout,
         None => detect::layout(&picture, path, warnings).map_err(|fault| fault.at(path))?,
@@ -89,11 +92,10 @@ fn load_folder(folder: &Path, options: &LoadOptions, warnings: &mut Vec<String>)
     }
     let mut side = None;
     let mut pixels = Vec::new();
+    let mut told = Vec::new();
     for names in FACE_NAMES {
         let path = find_face(folder, names)?;
-        let mut face = picture::open(&path)?;
-        warnings.append(&mut face.warnings);
-        check_radiance(&path, &mut face, options.negatives, warnings)?;
+        let face = open(&path, options, &mut told)?;
         let wanted = *side.get_or_insert(face.width);
         if face.width != wanted || face.height != wanted {
             let what = format!(
@@ -103,6 +105,12 @@ fn load_folder(folder: &Path, options: &LoadOptions, warnings: &mut Vec<String>)
             return Err(Fault::Invalid(what).at(&path));
         }
         pixels.extend(face.pixels);
+    }
+    // What all six say alike is said once.
+    for warning in told {
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
     }
     let width = side.unwrap_or(0);
     Ok(Probe { layout: Layout::Faces, width, height: 6 * width, pixels })
@@ -122,7 +130,36 @@ fn find_face(folder: &Path, names: [&str; 4]) -> Result<PathBuf, Error> {
     Err(Fault::Invalid(what).at(folder))
 }
 
-/// Refuses infinite and NaN pixels with their place, and refuses or clamps negative ones.
+/// Reads a picture as linear Rec. 709, checked for what radiance may be.
+fn open(path: &Path, options: &LoadOptions, warnings: &mut Vec<String>) -> Result<Picture, Error> {
+    let mut picture = picture::open(path, options.layer.as_deref())?;
+    warnings.append(&mut picture.warnings);
+    let settled = nonfinite::settle(&mut picture, options.non_finite).map_err(|fault| fault.at(path))?;
+    warnings.extend(settled.map(|told| format!("{}: {told}", path.display())));
+    picture.space.undo_chroma(&mut picture.pixels);
+    check_radiance(path, &mut picture, options.negatives, warnings)?;
+    warnings.extend(picture.space.convert(&mut picture.pixels));
+    clip_colors(&mut picture, warnings);
+    Ok(picture)
+}
+
+/// Share of a pixel's brightest channel below which a negative one is rounding of half floats.
+const ROUNDING: f32 = 5e-3;
+
+/// Sets channels to 0 that colours outside Rec. 709 would need to be negative.
+fn clip_colors(picture: &mut Picture, warnings: &mut Vec<String>) {
+    let mut count = 0;
+    for pixel in picture.pixels.iter_mut().filter(|pixel| pixel.iter().any(|v| *v < 0.0)) {
+        let brightest = pixel.iter().fold(0.0f32, |a, b| a.max(*b));
+        count += usize::from(pixel.iter().any(|v| *v < -ROUNDING * brightest));
+        *pixel = pixel.map(|v| v.max(0.0));
+    }
+    if count > 0 {
+        warnings.push(format!("{count} pixels have colours outside Rec. 709; their negative channels were set to 0"));
+    }
+}
+
+/// Refuses or clamps negative radiance.
 fn check_radiance(
     path: &Path,
     picture: &mut Picture,
@@ -135,10 +172,6 @@ fn check_radiance(
     let mut lowest_at = 0;
     let mut count = 0;
     for (index, pixel) in picture.pixels.iter().enumerate() {
-        if let Some(value) = pixel.iter().find(|v| !v.is_finite()) {
-            let what = format!("{} has radiance {value}; only finite values are light", place(index));
-            return Err(Fault::Invalid(what).at(path));
-        }
         let least = pixel.iter().fold(0.0f32, |a, b| a.min(*b));
         count += usize::from(least < 0.0);
         if least < lowest {

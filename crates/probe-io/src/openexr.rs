@@ -1,13 +1,16 @@
-//! OpenEXR pictures: RGB or luminance of the first flat layer, mip level 0, through the `exr` crate.
+//! OpenEXR pictures: one flat layer, mip level 0, as the display window shows it, through the `exr` crate.
 //!
 //! Blocks are unpacked one by one, so that what a block claims is checked before the crate allocates for it.
 
 use crate::Layout;
 use crate::error::Fault;
+use crate::layers::{self, Kind, PictureLayer};
 use crate::picture::{Picture, check_size};
-use exr::block::UncompressedBlock;
+use crate::primaries::{ColorSpace, Primaries, REC_709, XYZ};
+use crate::subsampled::{self, Plane, Sampling, samples};
 use exr::block::chunk::{Chunk, CompressedBlock};
 use exr::block::reader::{ChunksReader, Reader};
+use exr::block::{BlockIndex, UncompressedBlock};
 use exr::meta::attribute::{EnvironmentMap, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::*;
@@ -19,26 +22,95 @@ pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Most bytes that one block of pixels may unpack to: 256 lines (DWAB) of 16,384 pixels of 16 bytes.
 const MAX_BLOCK_BYTES: usize = 1 << 26;
 
-/// Reads a whole `.exr` file.
-pub(crate) fn read(bytes: &[u8]) -> std::result::Result<Picture, Fault> {
+/// Reads a whole `.exr` file: the layer of this name, or the one that is most likely the picture.
+pub(crate) fn read(bytes: &[u8], layer: Option<&str>) -> std::result::Result<Picture, Fault> {
+    let hidden = subsampled::hide(bytes);
+    let (bytes, sampling) = match &hidden {
+        Some((copy, sampling)) => (copy.as_slice(), sampling.as_slice()),
+        None => (bytes, [].as_slice()),
+    };
     let reader = Reader::read_from_buffered(Cursor::new(bytes), false).map_err(fault)?;
-    let layer = choose_layer(reader.headers())?;
+    let (layer, told) = layers::choose(reader.headers(), layer)?;
     let blocks = reader.headers().iter().map(|header| header.chunk_count);
     check_blocks(blocks.fold(0, usize::saturating_add), bytes.len())?;
-    let header = reader.headers()[layer].clone();
+    let header = reader.headers()[layer.part].clone();
     check_header(&header, bytes.len())?;
-    let mut warnings = Vec::new();
-    if !is_rgb(&header) {
+    let mut warnings: Vec<String> = told.into_iter().collect();
+    if layer.kind == Kind::Grey {
         warnings.push("the picture has only luminance: read as grey".to_owned());
     }
-    let Vec2(width, height) = header.layer_size;
-    Ok(Picture {
-        width,
-        height,
-        pixels: read_pixels(reader, layer, &header)?,
-        envmap: header_envmap(&header),
-        warnings,
-    })
+    let sampling = sampling.get(layer.part).filter(|all| all.iter().any(|one| *one != (1, 1)));
+    let pixels = match sampling {
+        None => read_pixels(reader, &layer, &header, None)?,
+        Some(sampling) => {
+            subsampled::check(&header, sampling)?;
+            read_pixels(reader, &layer, &header, Some(sampling))?
+        }
+    };
+    let Vec2(width, height) = header.shared_attributes.display_window.size;
+    let pixels = display(pixels, &header, bytes.len(), &mut warnings)?;
+    Ok(Picture { width, height, pixels, space: space(&header, layer.kind), envmap: header_envmap(&header), warnings })
+}
+
+/// What the numbers of the layer are.
+fn space(header: &Header, kind: Kind) -> ColorSpace {
+    let pair = |Vec2(x, y): Vec2<f32>| [f64::from(x), f64::from(y)];
+    let stated = header.shared_attributes.chromaticities.map(|c| Primaries {
+        red: pair(c.red),
+        green: pair(c.green),
+        blue: pair(c.blue),
+        white: pair(c.white),
+    });
+    ColorSpace {
+        primaries: if kind == Kind::Xyz { XYZ } else { stated.unwrap_or(REC_709) },
+        adapted: header.own_attributes.adopted_neutral.map(pair),
+        is_luminance_chroma: kind == Kind::LuminanceChroma,
+    }
+}
+
+/// The pixels of the data window as the display window shows them: black where there are none.
+fn display(
+    pixels: Vec<[f32; 3]>,
+    header: &Header,
+    bytes: usize,
+    warnings: &mut Vec<String>,
+) -> std::result::Result<Vec<[f32; 3]>, Fault> {
+    let (data, shown) = (header.data_window(), header.shared_attributes.display_window);
+    if data == shown {
+        return Ok(pixels);
+    }
+    let Vec2(width, height) = shown.size;
+    check_size(width, height, bytes)?;
+    let common = |axis: fn(Vec2<i32>) -> i32| {
+        let bounds = |window: IntegerBounds| (i64::from(axis(window.position)), i64::from(axis(window.end())));
+        let ((data_first, data_end), (first, end)) = (bounds(data), bounds(shown));
+        (data_first.max(first), data_end.min(end))
+    };
+    let (left, right) = common(|v| v.x());
+    let (top, bottom) = common(|v| v.y());
+    if left >= right || top >= bottom {
+        return Err(Fault::Invalid("no pixel of the data window lies in the display window".to_owned()));
+    }
+    let at = |window: IntegerBounds, x: i64, y: i64| {
+        let (x, y) = (x - i64::from(window.position.x()), y - i64::from(window.position.y()));
+        y as usize * window.size.x() + x as usize
+    };
+    let mut canvas = vec![[0.0f32; 3]; width * height];
+    let length = (right - left) as usize;
+    for y in top..bottom {
+        let (from, to) = (at(data, left, y), at(shown, left, y));
+        canvas[to..to + length].copy_from_slice(&pixels[from..from + length]);
+    }
+    let covered = length * (bottom - top) as usize;
+    let Vec2(columns, rows) = data.size;
+    if covered < canvas.len() {
+        warnings.push(format!("the file holds {columns} x {rows} pixels of {width} x {height}; the others are black"));
+    } else {
+        warnings.push(format!(
+            "pixels outside the display window ({width} x {height} of {columns} x {rows}) were left out"
+        ));
+    }
+    Ok(canvas)
 }
 
 /// Says an error of the `exr` crate in our words.
@@ -47,36 +119,6 @@ fn fault(error: exr::error::Error) -> Fault {
         exr::error::Error::NotSupported(what) => Fault::Unsupported(format!("OpenEXR: {what}")),
         other => Fault::Invalid(format!("damaged OpenEXR file: {other}")),
     }
-}
-
-/// Whether the layer has a channel of this name.
-fn has_channel(header: &Header, name: &str) -> bool {
-    let mut channels = header.channels.list.iter();
-    channels.any(|channel| channel.name.to_string() == name)
-}
-
-/// Whether the layer holds all three colours.
-fn is_rgb(header: &Header) -> bool {
-    ["R", "G", "B"].iter().all(|name| has_channel(header, name))
-}
-
-/// Whether the layer holds colours or luminance.
-fn is_picture(header: &Header) -> bool {
-    !header.deep && (is_rgb(header) || has_channel(header, "Y"))
-}
-
-/// The layer to read: the first one that holds a picture.
-fn choose_layer(headers: &[Header]) -> std::result::Result<usize, Fault> {
-    if let Some(layer) = headers.iter().position(is_picture) {
-        return Ok(layer);
-    }
-    let names: Vec<String> = headers
-        .iter()
-        .flat_map(|header| header.channels.list.iter().take(8))
-        .take(16)
-        .map(|channel| channel.name.to_string())
-        .collect();
-    Err(Fault::Unsupported(format!("no flat layer with channels R, G, B or Y; found: {}", names.join(", "))))
 }
 
 /// Refuses sizes beyond what the file's length can justify, and pictures with parts left out.
@@ -91,14 +133,6 @@ fn check_header(header: &Header, bytes: usize) -> std::result::Result<(), Fault>
             "blocks of {block_width} x {block_height} pixels with {} bytes each are too large",
             header.channels.bytes_per_pixel
         )));
-    }
-    for channel in &header.channels.list {
-        if channel.sampling != Vec2(1, 1) {
-            return Err(Fault::Unsupported(format!("channel {} is subsampled; save as plain RGB", channel.name)));
-        }
-        if channel.sample_type == SampleType::U32 && ["R", "G", "B", "Y"].contains(&channel.name.to_string().as_str()) {
-            return Err(Fault::Unsupported(format!("channel {} holds integers; save as half or float", channel.name)));
-        }
     }
     Ok(())
 }
@@ -119,34 +153,152 @@ fn header_envmap(header: &Header) -> Option<Layout> {
     })
 }
 
-/// Reads the blocks of the finest level of a layer into an upright picture.
+/// Reads the blocks of the finest level of a layer: its three channels, row by row from the top of the data window.
 fn read_pixels(
     reader: Reader<Cursor<&[u8]>>,
-    layer: usize,
+    layer: &PictureLayer,
     header: &Header,
+    sampling: Option<&Vec<Sampling>>,
 ) -> std::result::Result<Vec<[f32; 3]>, Fault> {
+    let part = layer.part;
     let mut chunks = reader
-        .filter_chunks(false, |_, tile, block| block.layer == layer && tile.is_largest_resolution_level())
+        .filter_chunks(false, |_, tile, block| block.layer == part && tile.is_largest_resolution_level())
         .map_err(fault)?;
     let meta = chunks.meta_data().clone();
-    let Vec2(width, height) = header.layer_size;
-    let mut pixels = vec![[0.0f32; 3]; width * height];
-    let mut filled = 0;
+    let mut target = Target::new(layer, header, sampling);
     for chunk in &mut chunks {
         let chunk = chunk.map_err(fault)?;
-        check_chunk(&chunk, layer, header)?;
-        let block = UncompressedBlock::decompress_chunk(chunk, &meta, false).map_err(fault)?;
-        if block.index.level != Vec2(0, 0) {
-            continue;
+        check_chunk(&chunk, part, header)?;
+        let block = match sampling {
+            None => UncompressedBlock::decompress_chunk(chunk, &meta, false).map_err(fault)?,
+            Some(sampling) => decompress_lines(chunk, header, sampling)?,
+        };
+        if block.index.level == Vec2(0, 0) {
+            target.copy(&block, header)?;
         }
-        copy_block(&block, header, &mut pixels)?;
-        filled += block.index.pixel_size.area();
     }
-    if filled != width * height {
-        let what = format!("blocks hold {filled} pixels, not {width} x {height}: parts are missing or double");
-        return Err(Fault::Invalid(what));
+    target.finish(header.layer_size)
+}
+
+/// A block of lines with subsampled channels.
+fn decompress_lines(
+    chunk: Chunk,
+    header: &Header,
+    sampling: &[Sampling],
+) -> std::result::Result<UncompressedBlock, Fault> {
+    let tile = header.get_block_data_indices(&chunk.compressed_block).map_err(fault)?;
+    let bounds = header.get_absolute_block_pixel_coordinates(tile).map_err(fault)?;
+    bounds.validate(Some(header.layer_size)).map_err(fault)?;
+    let CompressedBlock::ScanLine(block) = chunk.compressed_block else {
+        return Err(Fault::Invalid("a tile in a picture of lines".to_owned()));
+    };
+    let first = bounds.position + header.own_attributes.layer_position;
+    let data = subsampled::unpack(header, sampling, first, bounds.size, block.compressed_pixels_le)?;
+    let position = bounds.position.to_usize("block position").map_err(fault)?;
+    let index =
+        BlockIndex { layer: chunk.layer_index, pixel_position: position, pixel_size: bounds.size, level: Vec2(0, 0) };
+    Ok(UncompressedBlock { index, data })
+}
+
+/// Where the samples of blocks go.
+struct Target {
+    pixels: Vec<[f32; 3]>,
+    /// For each channel of the file which of the three numbers it is; several for grey.
+    slots: Vec<Vec<usize>>,
+    /// Pixels per sample of each channel of the file.
+    sampling: Vec<Sampling>,
+    /// Channels of fewer samples, by number.
+    planes: [Option<Plane>; 3],
+    filled: usize,
+}
+
+impl Target {
+    fn new(layer: &PictureLayer, header: &Header, sampling: Option<&Vec<Sampling>>) -> Target {
+        let channels = header.channels.list.len();
+        let sampling = sampling.cloned().unwrap_or_else(|| vec![(1, 1); channels]);
+        let first = header.own_attributes.layer_position;
+        let plane = |slot: usize| {
+            let own = sampling[layer.channels[slot]];
+            (own != (1, 1)).then(|| Plane::new(own, first, header.layer_size))
+        };
+        let slots = |channel: usize| (0..3).filter(|slot| layer.channels[*slot] == channel).collect();
+        Target {
+            pixels: vec![[0.0; 3]; header.layer_size.area()],
+            slots: (0..channels).map(slots).collect(),
+            planes: [plane(0), plane(1), plane(2)],
+            sampling,
+            filled: 0,
+        }
     }
-    Ok(pixels)
+
+    /// Copies the samples of a block.
+    fn copy(&mut self, block: &UncompressedBlock, header: &Header) -> std::result::Result<(), Fault> {
+        let Vec2(left, top) = block.index.pixel_position;
+        let Vec2(width, height) = block.index.pixel_size;
+        let Vec2(first_x, first_y) = header.own_attributes.layer_position;
+        let short = || Fault::Invalid("a block ends too early".to_owned());
+        let mut rest = block.data.as_slice();
+        for y in top..top + height {
+            for (c, channel) in header.channels.list.iter().enumerate() {
+                let (step_x, step_y) = self.sampling[c];
+                if (i64::from(first_y) + y as i64).rem_euclid(step_y as i64) != 0 {
+                    continue;
+                }
+                let count = samples(first_x.saturating_add(left as i32), width, step_x);
+                let size = channel.sample_type.bytes_per_sample();
+                let (line, after) = rest.split_at_checked(count * size).ok_or_else(short)?;
+                rest = after;
+                for slot in self.slots[c].clone() {
+                    self.copy_line(line, channel.sample_type, slot, (left, y), header.layer_size.x())?;
+                }
+            }
+        }
+        self.filled += block.index.pixel_size.area();
+        Ok(())
+    }
+
+    /// Copies the samples of one channel in one line.
+    fn copy_line(
+        &mut self,
+        line: &[u8],
+        kind: SampleType,
+        slot: usize,
+        (left, y): (usize, usize),
+        width: usize,
+    ) -> std::result::Result<(), Fault> {
+        let outside = || Fault::Invalid("a block lies outside the picture".to_owned());
+        let half = |b: &[u8; 2]| f16::from_ne_bytes(*b).to_f32();
+        let full = |b: &[u8; 4]| f32::from_ne_bytes(*b);
+        let values: Box<dyn Iterator<Item = f32>> = match kind {
+            SampleType::F16 => Box::new(line.as_chunks::<2>().0.iter().map(half)),
+            _ => Box::new(line.as_chunks::<4>().0.iter().map(full)),
+        };
+        if let Some(plane) = &mut self.planes[slot] {
+            let row = plane.row(y).ok_or_else(outside)?;
+            row.iter_mut().zip(values).for_each(|(target, value)| *target = value);
+            return Ok(());
+        }
+        let row = self.pixels.get_mut(y * width + left..(y + 1) * width).ok_or_else(outside)?;
+        row.iter_mut().zip(values).for_each(|(pixel, value)| pixel[slot] = value);
+        Ok(())
+    }
+
+    /// The whole picture, with the channels of fewer samples spread over it.
+    fn finish(mut self, size: Vec2<usize>) -> std::result::Result<Vec<[f32; 3]>, Fault> {
+        let Vec2(width, height) = size;
+        let filled = self.filled;
+        if filled != width * height {
+            let what = format!("blocks hold {filled} pixels, not {width} x {height}: parts are missing or double");
+            return Err(Fault::Invalid(what));
+        }
+        for (slot, plane) in self.planes.iter().enumerate() {
+            let Some(plane) = plane else { continue };
+            for (i, pixel) in self.pixels.iter_mut().enumerate() {
+                pixel[slot] = plane.at(i % width, i / width);
+            }
+        }
+        Ok(self.pixels)
+    }
 }
 
 /// Refuses blocks of other layers, and sizes within a block that its pixels cannot need.
@@ -174,36 +326,6 @@ fn check_chunk(chunk: &Chunk, layer: usize, header: &Header) -> std::result::Res
         // A shorter block is left to the crate, which refuses or skips it.
         if claimed.is_some_and(|b| u64::from_le_bytes(b) > allowed) {
             return Err(Fault::Invalid(format!("damaged OpenEXR file: size {number} of a DWA block is out of range")));
-        }
-    }
-    Ok(())
-}
-
-/// Copies the colours of a block into the picture.
-fn copy_block(block: &UncompressedBlock, header: &Header, pixels: &mut [[f32; 3]]) -> std::result::Result<(), Fault> {
-    let grey = !is_rgb(header);
-    for line in block.lines(&header.channels) {
-        let channel = &header.channels.list[line.location.channel];
-        let slots = match channel.name.to_string().as_str() {
-            "R" => 0..1,
-            "G" if !grey => 1..2,
-            "B" if !grey => 2..3,
-            "Y" if grey => 0..3,
-            _ => continue,
-        };
-        let values: Vec<f32> = match channel.sample_type {
-            SampleType::F16 => {
-                line.read_samples::<f16>().map(|v| v.map(f16::to_f32)).collect::<exr::error::Result<_>>()
-            }
-            _ => line.read_samples::<f32>().collect::<exr::error::Result<_>>(),
-        }
-        .map_err(fault)?;
-        let Vec2(x, y) = line.location.position;
-        let start = y * header.layer_size.width() + x;
-        let row = pixels.get_mut(start..start + values.len());
-        let row = row.ok_or_else(|| Fault::Invalid("a block lies outside the picture".to_owned()))?;
-        for (pixel, value) in row.iter_mut().zip(values) {
-            pixel[slots.clone()].fill(value);
         }
     }
     Ok(())

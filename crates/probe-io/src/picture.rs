@@ -1,6 +1,7 @@
 //! Linear pictures in files: read by what the bytes are, written beside and then renamed.
 
 use crate::error::{Error, Fault};
+use crate::primaries::ColorSpace;
 use crate::{openexr, rgbe};
 use std::path::{Path, PathBuf};
 
@@ -11,8 +12,10 @@ pub(crate) struct Picture {
     pub(crate) width: usize,
     /// Rows.
     pub(crate) height: usize,
-    /// Linear RGB, row by row from the top.
+    /// Linear, row by row from the top.
     pub(crate) pixels: Vec<[f32; 3]>,
+    /// What the three numbers of a pixel are.
+    pub(crate) space: ColorSpace,
     /// The layout that the file's `envmap` attribute states.
     pub(crate) envmap: Option<crate::Layout>,
     /// Notes for the user.
@@ -40,24 +43,29 @@ pub(crate) fn check_size(width: usize, height: usize, bytes: usize) -> Result<()
     }
 }
 
-/// Reads a `.hdr` or `.exr` file, told apart by its first bytes.
-pub(crate) fn open(path: &Path) -> Result<Picture, Error> {
+/// Reads a `.hdr` or `.exr` file, told apart by its first bytes; where it has several layers, the one of this name.
+pub(crate) fn open(path: &Path, layer: Option<&str>) -> Result<Picture, Error> {
     let bytes = std::fs::read(path).map_err(|source| Error::Io { doing: "read", path: path.to_path_buf(), source })?;
     let read = match bytes.get(..4) {
-        Some(start) if start == openexr::MAGIC => openexr::read(&bytes),
-        Some([b'#', b'?', ..]) => rgbe::read(&bytes),
+        Some(start) if start == openexr::MAGIC => openexr::read(&bytes, layer),
+        Some([b'#', b'?', ..]) => match layer {
+            None => rgbe::read(&bytes),
+            Some(name) => Err(Fault::Invalid(format!("there is no layer {name:?}: a Radiance picture has none"))),
+        },
         _ => Err(Fault::Invalid("neither an OpenEXR nor a Radiance picture (.exr, .hdr)".to_owned())),
     };
     read.map_err(|fault| fault.at(path))
 }
 
-/// Reads width, height and linear RGB pixels (rows from the top) of a `.hdr` or `.exr` file, as they stand:
+/// Reads width, height and linear Rec. 709 pixels (rows from the top) of a `.hdr` or `.exr` file, as they stand:
 /// negative and not finite values too.
 ///
 /// # Errors
 /// Where the file cannot be read, is damaged, or holds no RGB or luminance picture.
 pub fn read_picture(path: &Path) -> Result<(usize, usize, Vec<[f32; 3]>), Error> {
-    let picture = open(path)?;
+    let mut picture = open(path, None)?;
+    picture.space.undo_chroma(&mut picture.pixels);
+    picture.space.convert(&mut picture.pixels);
     Ok((picture.width, picture.height, picture.pixels))
 }
 

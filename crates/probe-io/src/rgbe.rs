@@ -5,6 +5,7 @@
 
 use crate::error::Fault;
 use crate::picture::{Picture, check_size};
+use crate::primaries::{ColorSpace, Primaries, REC_709, XYZ};
 
 /// Longest header that is looked at, in bytes.
 const MAX_HEADER: usize = 1 << 16;
@@ -26,7 +27,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Picture, Fault> {
             pixels[header.target(column, row)] = header.decode(*rgbe);
         }
     }
-    Ok(Picture { width, height, pixels, envmap: None, warnings: header.warnings })
+    Ok(Picture { width, height, pixels, space: header.space, envmap: None, warnings: header.warnings })
 }
 
 /// What stands before the pixels.
@@ -42,6 +43,8 @@ struct Header {
     flipped: (bool, bool),
     /// Radiance of a stored value of 1.
     scale: [f64; 3],
+    /// What the three numbers of a pixel are.
+    space: ColorSpace,
     /// Notes for the user.
     warnings: Vec<String>,
 }
@@ -78,22 +81,23 @@ fn read_header(bytes: &[u8]) -> Result<(Header, usize), Fault> {
         let what = "no '#?RADIANCE' at the start: this is not a Radiance picture";
         return Err(Fault::Invalid(what.to_owned()));
     }
-    let mut scale = [1.0f64; 3];
+    let mut variables = Variables { scale: [1.0; 3], primaries: None, is_xyz: false, warnings: Vec::new() };
     let mut at = 0;
     loop {
         let line = next_line(bytes, &mut at)?;
         if line.is_empty() {
             break;
         }
-        read_variable(&line, &mut scale)?;
+        variables.read(&line)?;
     }
-    let mut warnings = Vec::new();
+    let Variables { scale, primaries, is_xyz, mut warnings } = variables;
     if scale != [1.0; 3] {
         warnings.push(format!("the header's EXPOSURE and COLORCORR were undone: pixels times {scale:?}"));
     }
     let size = next_line(bytes, &mut at)?;
     let mut header = parse_size(&size)?;
     header.scale = scale;
+    header.space.primaries = if is_xyz { XYZ } else { primaries.unwrap_or(REC_709) };
     header.warnings = warnings;
     Ok((header, at))
 }
@@ -109,36 +113,52 @@ fn next_line(bytes: &[u8], at: &mut usize) -> Result<String, Fault> {
     Ok(line.trim_end_matches('\r').to_owned())
 }
 
-/// Obeys `FORMAT`, `EXPOSURE` and `COLORCORR`; every other line is a remark.
-fn read_variable(line: &str, scale: &mut [f64; 3]) -> Result<(), Fault> {
-    let Some((name, value)) = line.split_once('=') else {
-        return Ok(());
-    };
-    let numbers = || -> Result<Vec<f64>, Fault> {
-        let parsed: Result<Vec<f64>, _> = value.split_whitespace().map(str::parse).collect();
-        match parsed {
-            Ok(list) if !list.is_empty() && list.iter().all(|v| v.is_finite() && *v > 0.0) => Ok(list),
-            _ => Err(Fault::Invalid(format!("header line '{line:.60}' is not positive numbers"))),
-        }
-    };
-    match name.trim() {
-        "FORMAT" if value.trim() != "32-bit_rle_rgbe" => Err(Fault::Unsupported(format!(
-            "pixel format '{:.40}' is not read; convert to 32-bit_rle_rgbe",
-            value.trim()
-        ))),
-        "EXPOSURE" => {
-            let exposure = numbers()?[0];
-            *scale = scale.map(|s| s / exposure);
-            Ok(())
-        }
-        "COLORCORR" => match numbers()?[..] {
-            [r, g, b] => {
-                *scale = [scale[0] / r, scale[1] / g, scale[2] / b];
-                Ok(())
+/// What the lines of the header say so far.
+#[derive(Debug)]
+struct Variables {
+    scale: [f64; 3],
+    primaries: Option<Primaries>,
+    is_xyz: bool,
+    warnings: Vec<String>,
+}
+
+impl Variables {
+    /// Obeys `FORMAT`, `EXPOSURE`, `COLORCORR` and `PRIMARIES`; every other line is a remark.
+    ///
+    /// So are indented lines: programs that combine pictures copy the headers of their inputs, a tab before each line.
+    fn read(&mut self, line: &str) -> Result<(), Fault> {
+        let Some((name, value)) = line.split_once('=').filter(|_| !line.starts_with([' ', '\t'])) else {
+            return Ok(());
+        };
+        let numbers = || -> Option<Vec<f64>> { value.split_whitespace().map(|word| word.parse().ok()).collect() };
+        let positive = || match numbers() {
+            Some(list) if !list.is_empty() && list.iter().all(|v| v.is_finite() && *v > 0.0) => Ok(list),
+            _ => Err(Fault::Invalid(format!("header line {line:.60?} is not positive numbers"))),
+        };
+        match name.trim_end() {
+            "FORMAT" => match value.trim() {
+                "32-bit_rle_rgbe" => self.is_xyz = false,
+                "32-bit_rle_xyze" => self.is_xyz = true,
+                other => {
+                    let what = format!("pixel format {other:.40?} is not read; convert to 32-bit_rle_rgbe");
+                    return Err(Fault::Unsupported(what));
+                }
+            },
+            "EXPOSURE" => {
+                let exposure = positive()?[0];
+                self.scale = self.scale.map(|s| s / exposure);
             }
-            _ => Err(Fault::Invalid("COLORCORR needs three numbers".to_owned())),
-        },
-        _ => Ok(()),
+            "COLORCORR" => match positive()?[..] {
+                [r, g, b] => self.scale = [self.scale[0] / r, self.scale[1] / g, self.scale[2] / b],
+                _ => return Err(Fault::Invalid("COLORCORR needs three numbers".to_owned())),
+            },
+            "PRIMARIES" => match numbers().and_then(|list| <[f64; 8]>::try_from(list).ok()) {
+                Some(list) => self.primaries = Some(Primaries::from_numbers(list)),
+                None => self.warnings.push(format!("header line {line:.100?} is not eight numbers: read as Rec. 709")),
+            },
+            _ => {}
+        }
+        Ok(())
     }
 }
 
@@ -166,6 +186,7 @@ fn parse_size(line: &str) -> Result<Header, Fault> {
         transposed,
         flipped: (left(slow) || left(fast), up(slow) || up(fast)),
         scale: [1.0; 3],
+        space: ColorSpace::rec_709(),
         warnings: Vec::new(),
     })
 }

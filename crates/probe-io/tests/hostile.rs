@@ -121,7 +121,7 @@ fn crafted_headers_allocate_nothing() {
     assert!(error_of("run.hdr", run).contains("run past its end"));
     assert!(error_of("first.hdr", b"#?RADIANCE\n\n-Y 1 +X 2\n\x01\x01\x01\x02").contains("no pixel to repeat"));
     assert!(error_of("cut.hdr", b"#?RADIANCE\n\n-Y 2 +X 4\n\x01").contains("cut off"));
-    assert!(error_of("xyz.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 2\n").contains("xyze"));
+    assert!(error_of("ycc.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_ycce\n\n-Y 1 +X 2\n").contains("ycce"));
     assert!(error_of("endless.hdr", &[b"#?".as_slice(), &[b'a'; 1 << 20]].concat()).contains("does not end"));
     assert!(peak_memory() < MOST_MEMORY);
 }

@@ -4,7 +4,7 @@ use crate::console::Console;
 use crate::usage::Usage;
 use anyhow::{Context, Result};
 use coeff_io::Prt;
-use probe_io::{Environment, Layout, LoadOptions, Negatives};
+use probe_io::{Environment, Layout, LoadOptions, Negatives, NonFinite};
 use scene::Scene;
 use sh_math::Bands;
 use std::path::{Path, PathBuf};
@@ -81,6 +81,12 @@ pub(crate) struct ReadOptions {
     /// What to do with negative pixels.
     #[arg(long, value_enum, default_value_t = NegativesName::Refuse)]
     negatives: NegativesName,
+    /// What to do with pixels that are infinite or not a number.
+    #[arg(long, value_enum, value_name = "CHOICE", default_value_t = NonFiniteName::Refuse)]
+    nonfinite: NonFiniteName,
+    /// The part or layer of an OpenEXR file; the plain colours, or the layer called as them, by default.
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
 }
 
 /// The light of a command that draws.
@@ -129,8 +135,16 @@ impl ProbeSource {
             NegativesName::Refuse => Negatives::Refuse,
             NegativesName::Clamp => Negatives::Clamp,
         };
-        let options = LoadOptions { layout: read.layout.map(Layout::from), negatives };
-        let (environment, warnings) = Environment::load(path, &options)?;
+        let non_finite = match read.nonfinite {
+            NonFiniteName::Refuse => NonFinite::Refuse,
+            NonFiniteName::Clamp => NonFinite::Clamp,
+        };
+        let layout = read.layout.map(Layout::from);
+        let options = LoadOptions { layout, negatives, non_finite, layer: read.layer.clone() };
+        let (environment, warnings) = Environment::load(path, &options).map_err(|error| match error {
+            probe_io::Error::NotFinite { .. } => anyhow::anyhow!("{error} (--nonfinite clamp)"),
+            error => error.into(),
+        })?;
         for warning in warnings {
             console.notice(&format!("warning: {warning}"));
         }
@@ -174,6 +188,15 @@ enum NegativesName {
     /// End with an error.
     Refuse,
     /// Set them to 0 and say so.
+    Clamp,
+}
+
+/// What to do with pixels that are infinite or not a number.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum NonFiniteName {
+    /// End with an error.
+    Refuse,
+    /// Infinite ones become the largest finite value, NaN the mean of its neighbours; say so.
     Clamp,
 }
 

@@ -3,7 +3,7 @@
 use super::Case;
 use super::case::worst;
 use glam::{DVec3, Vec3};
-use probe_io::{Environment, Layout, LoadOptions, Negatives, Probe, read_picture, write_exr};
+use probe_io::{Environment, Layout, LoadOptions, Probe, read_picture, write_exr};
 use sh_math::{Bands, Rgb, project};
 use std::f64::consts::PI;
 use std::path::Path;
@@ -135,7 +135,7 @@ fn loaded((layout, width, height): Shape) -> Environment {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("probe.exr");
     write_exr(&path, width, height, &vec![[1.0; 3]; width * height]).expect("a written file");
-    let options = LoadOptions { layout: Some(layout), negatives: Negatives::Refuse };
+    let options = LoadOptions { layout: Some(layout), ..LoadOptions::strict() };
     Environment::load(&path, &options).expect("a good probe").0
 }
 
