@@ -184,7 +184,7 @@ impl<'a> Arrivals<'a> {
     pub(crate) fn at(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Arrival {
         let (direct, step) = self.gatherer.direct(receiver, index, worker);
         let mut values = vec![0.0; self.shape.len()];
-        self.add_open(&direct.transfer, &mut values);
+        self.add_open(&direct.transfer, &direct.tinted, &mut values);
         let mut arrival = Arrival {
             values,
             openness: direct.openness,
@@ -204,12 +204,13 @@ impl<'a> Arrivals<'a> {
             if self.gatherer.hits && !blockers.found.is_empty() {
                 let open = self.gatherer.bank.domain.open_about(self.functions, receiver.normal);
                 let closed: Vec<f32> = open.iter().zip(&direct.transfer).map(|(all, open)| all - open).collect();
-                let numbers = self.shape.depth * self.shape.channels;
+                let numbers = [self.shape.depth, self.shape.channels];
+                let found = (&blockers.found[..], &blockers.filters[..]);
                 let mut send = |hit: &Hit, direction, out: &mut [f32]| self.sent(hit, direction, out);
-                add_sent(&blockers.found, &closed, (self.functions, numbers), &mut send, &mut arrival.values);
+                add_sent(found, &closed, (self.functions, numbers), &mut send, &mut arrival.values);
                 if self.apart {
                     let angle = self.gatherer.bank.domain.solid_angle() as f32;
-                    arrival.found = Found { hits: blockers.found, closed, angle };
+                    arrival.found = Found { hits: blockers.found, filters: blockers.filters, closed, angle };
                 }
             }
         }
@@ -222,17 +223,28 @@ impl<'a> Arrivals<'a> {
         arrival
     }
 
-    fn add_open(&self, visibility: &[f32], values: &mut [f32]) {
-        let Shape { functions, depth, channels } = self.shape;
+    /// Adds what open directions bring. `tinted` is the visibility of each channel where what is passed on the way is tinted, else empty.
+    fn add_open(&self, visibility: &[f32], tinted: &[f32], values: &mut [f32]) {
+        let channels = self.shape.channels;
         match &self.direct {
-            Direct::Terms(terms) => {
-                let mut sums = vec![0.0f64; functions * depth];
-                for term in terms {
-                    sums[term.a as usize * depth + term.b as usize] +=
-                        term.value * f64::from(visibility[term.c as usize]);
-                }
+            Direct::Terms(terms) if tinted.is_empty() || channels == 1 => {
+                let sums = self.products(terms, visibility);
                 for (out, sum) in values.chunks_exact_mut(channels).zip(sums) {
                     out.fill(sum as f32);
+                }
+            }
+            Direct::Terms(terms) => {
+                for (c, visibility) in tinted.chunks_exact(visibility.len()).enumerate() {
+                    let out = values.iter_mut().skip(c).step_by(channels);
+                    out.zip(self.products(terms, visibility)).for_each(|(out, sum)| *out = sum as f32);
+                }
+            }
+            Direct::Lit(rows) if !tinted.is_empty() => {
+                let n = visibility.len();
+                for (out, row) in values.chunks_exact_mut(channels).zip(rows.chunks_exact(n)) {
+                    for ((c, out), visibility) in out.iter_mut().enumerate().zip(tinted.chunks_exact(n)) {
+                        *out += row.iter().zip(visibility).map(|(factor, v)| factor[c] * v).sum::<f32>();
+                    }
                 }
             }
             Direct::Lit(rows) => {
@@ -243,6 +255,16 @@ impl<'a> Arrivals<'a> {
                 }
             }
         }
+    }
+
+    /// The products of every coefficient of the light with a visibility, by function.
+    fn products(&self, terms: &[Triple], visibility: &[f32]) -> Vec<f64> {
+        let Shape { functions, depth, .. } = self.shape;
+        let mut sums = vec![0.0f64; functions * depth];
+        for term in terms {
+            sums[term.a as usize * depth + term.b as usize] += term.value * f64::from(visibility[term.c as usize]);
+        }
+        sums
     }
 
     /// Writes what a surface sends back along a ray, `[depth][channel]`; whether it sends anything.

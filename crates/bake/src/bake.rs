@@ -285,7 +285,7 @@ impl<'a> Run<'a> {
         let glints = &mut self.glints;
         let mut wanted = Wanted { worth: tolerance(self.settings.quality), ..Wanted::default() };
         let mut sink = |id: u32, seen: &Gathered| {
-            last.set_all(id, &seen.transfer);
+            last.set_direct(id, &seen.transfer, &seen.tinted);
             let finding = Finding { openness: seen.openness, inside_share: seen.inside_share };
             findings[id as usize] = finding;
             errors[id as usize] = seen.error;

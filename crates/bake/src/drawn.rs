@@ -144,10 +144,10 @@ pub(crate) fn transmission(table: &Table<'_>) -> PlanRow {
     let (f, d) = (table.facts, table.decisions);
     let stake = largest(table, |m| m.passes);
     let words = Words {
-        decision: if d.transmission { "rays pass, drawn clear".into() } else { "nothing".into() },
+        decision: if d.transmission { "rays pass in part, drawn clear".into() } else { "nothing".into() },
         reason: match f.transmissive.count() {
             0 => "every surface is opaque".into(),
-            n => format!("{n} materials blend or transmit"),
+            n => format!("{n} materials blend or transmit, and stop the share of light that they cover"),
         },
         stake,
         at_stake: match f.transmissive.any() {

@@ -46,12 +46,14 @@ pub(crate) struct Facts {
     pub(crate) dark: u64,
     /// Of each permanent receiver: whether something stands above it.
     above: Vec<bool>,
-    /// Diffuse albedo of surfaces that block: mean over their area, and largest.
+    /// Diffuse albedo of surfaces that block light or a part of it: mean over their area, and largest.
     pub(crate) mean_albedo: f32,
     pub(crate) largest_albedo: f32,
     /// Materials.
     pub(crate) reflecting: Named,
     pub(crate) colored: Named,
+    /// Those that tint the light that passes through them.
+    pub(crate) stained: Named,
     pub(crate) masked: Named,
     pub(crate) holed: Named,
     pub(crate) shiny: Named,
@@ -81,7 +83,9 @@ impl Facts {
         let mut materials: Vec<material::Facts> =
             (0..scene.materials.len()).map(|m| material::Facts::of(scene, m)).collect();
         if !allowed(settings, Effect::Transmission) {
-            materials.iter_mut().for_each(|m| m.blocks |= m.transmits);
+            for m in materials.iter_mut().filter(|m| m.transmits) {
+                (m.blocks, m.translucent, m.stains, m.opacity) = (true, false, false, 1.0);
+            }
         }
         let named = |test: &dyn Fn(&material::Facts) -> bool| {
             let pairs = scene.materials.iter().zip(&materials).filter(|(_, facts)| test(facts));
@@ -89,7 +93,7 @@ impl Facts {
         };
         let textures = |slot: &dyn Fn(usize) -> Option<TextureSlot>| texture_bytes(scene, slot);
         let (of, all) = (&materials, &scene.materials);
-        let blocking = || materials.iter().filter(|m| m.blocks);
+        let scattering = || materials.iter().filter(|m| m.scatters());
         Self {
             meshes: Vec::new(),
             receivers: 0,
@@ -97,9 +101,10 @@ impl Facts {
             dark: 0,
             above: Vec::new(),
             mean_albedo: mean_albedo(scene, &materials),
-            largest_albedo: blocking().map(|m| m.albedo.largest).fold(0.0, f32::max),
-            reflecting: named(&|m| m.blocks && m.albedo.largest > 0.0),
-            colored: named(&|m| m.blocks && m.albedo.colored),
+            largest_albedo: scattering().map(|m| m.albedo.largest).fold(0.0, f32::max),
+            reflecting: named(&|m| m.scatters() && m.albedo.largest > 0.0),
+            colored: named(&|m| m.scatters() && m.albedo.colored),
+            stained: named(&|m| m.stains),
             masked: named(&|m| m.masked),
             holed: named(&|m| m.holes > 0.0),
             shiny: named(&|m| m.shines),
@@ -190,10 +195,11 @@ fn mean_albedo(scene: &Scene, materials: &[material::Facts]) -> f32 {
     let (mut area, mut sum) = (0.0f64, 0.0f64);
     for mesh in &scene.meshes {
         let facts = &materials[mesh.material as usize];
-        if !facts.blocks {
+        if !facts.scatters() {
             continue;
         }
-        let mesh_area: f64 = (0..mesh.triangles.len()).map(|t| mesh.area(t)).sum();
+        let own: f64 = (0..mesh.triangles.len()).map(|t| mesh.area(t)).sum();
+        let mesh_area = own * f64::from(facts.opacity);
         area += mesh_area;
         sum += mesh_area * f64::from(facts.albedo.mean);
     }

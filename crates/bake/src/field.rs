@@ -46,6 +46,11 @@ impl Field {
         &self.row(receiver)[channel * self.stride..][..self.coefficients]
     }
 
+    /// Sets a receiver to `[channel][coefficient]`, or where that is empty every channel to the same coefficients.
+    pub(crate) fn set_direct(&mut self, receiver: u32, all: &[f32], tinted: &[f32]) {
+        if tinted.is_empty() { self.set_all(receiver, all) } else { self.set(receiver, tinted) }
+    }
+
     /// Sets every channel of a receiver to the same coefficients.
     pub(crate) fn set_all(&mut self, receiver: u32, coefficients: &[f32]) {
         let stride = self.stride;

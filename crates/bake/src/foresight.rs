@@ -9,6 +9,9 @@
 const AROUND: usize = 8;
 /// Of this many foreseen directions one is traced.
 const PART: u32 = 3;
+/// State of a direction that meets what passes a part of the light. Nothing is foreseen beside one: no sum of [`AROUND`] states that holds
+/// it is 0 or [`AROUND`].
+const PARTLY: u8 = 16;
 
 /// For every direction after the first step of a set, those of earlier steps around it.
 #[derive(Debug, Default)]
@@ -162,17 +165,40 @@ impl Choice {
     }
 
     /// Enters what the traced rays met into `blocked`, and appends to `open` how much each direction of the step (which begins at
-    /// `start`) adds to the open sum: 1 or 0, and more or less where a foreseen one met otherwise.
-    pub(crate) fn settle(&self, start: usize, met: &[u64], blocked: &mut [u8], open: &mut Vec<f32>) {
+    /// `start`) adds to the open sum: 1 or 0, and more or less where a foreseen one met otherwise. `passed` holds the share of light that
+    /// rays which are not blocked pass; empty where that is all.
+    pub(crate) fn settle(&self, start: usize, met: &[u64], passed: &[f32], blocked: &mut [u8], open: &mut Vec<f32>) {
         debug_assert_eq!(open.len(), start, "step follows step");
         open.extend(blocked[start..].iter().map(|&state| if state == 0 { 1.0 } else { 0.0 }));
         for (k, (&j, &foreseen)) in self.traced.iter().zip(&self.foreseen).enumerate() {
-            let state = (met[k / 64] >> (k % 64) & 1) as u8;
-            let value = if state == 0 { 1.0 } else { 0.0 };
+            let mut state = (met[k / 64] >> (k % 64) & 1) as u8;
+            let mut value = if state == 0 { 1.0 } else { 0.0 };
+            if let Some(&share) = passed.get(k).filter(|&&share| share != 1.0 && state == 0) {
+                (state, value) = (if share == 0.0 { 1 } else { PARTLY }, share);
+            }
             blocked[j as usize] = state;
             let out = &mut open[j as usize];
             *out =
                 if foreseen == 2 || foreseen == state { value } else { *out + (value - *out) * self.factor(foreseen) };
+        }
+    }
+}
+
+impl Choice {
+    /// Appends to `open` what [`Choice::settle`] would, before it, for another share that rays pass: one channel of a tint.
+    pub(crate) fn settle_channel(
+        &self,
+        start: usize,
+        met: &[u64],
+        passed: impl Fn(usize) -> f32,
+        blocked: &[u8],
+        open: &mut Vec<f32>,
+    ) {
+        open.extend(blocked[start..].iter().map(|&state| if state == 0 { 1.0 } else { 0.0 }));
+        for (k, (&j, &foreseen)) in self.traced.iter().zip(&self.foreseen).enumerate() {
+            let value = if met[k / 64] >> (k % 64) & 1 == 1 { 0.0 } else { passed(k) };
+            let out = &mut open[j as usize];
+            *out = if foreseen == 2 || value == *out { value } else { *out + (value - *out) * self.factor(foreseen) };
         }
     }
 }
@@ -226,7 +252,7 @@ mod tests {
                     met[k / 64] |= 1 << (k % 64);
                 }
             }
-            choice.settle(start, &met, &mut blocked, &mut open);
+            choice.settle(start, &met, &[], &mut blocked, &mut open);
             if trust {
                 open = blocked.iter().map(|&state| f32::from(1 - state)).collect();
             }

@@ -1,16 +1,21 @@
 //! What one receiver sees: its direct transfer, and the surfaces that block its view.
 
+mod translucent;
+mod worker;
+
+pub(crate) use worker::Worker;
+
 use crate::directions::{DirectionBank, DirectionSet, Step};
 use crate::domain::Domain;
 use crate::dot::dot;
-use crate::foresight::Choice;
+use crate::found::mean;
 use crate::hit::{NearPoint, PackedHit, near_points, packed};
 use crate::mirror::Mirrors;
 use crate::receivers::Receiver;
 use crate::world::World;
 use coeff_io::Quality;
 use glam::{Mat3, Vec3};
-use raytrace::{FanState, Hit, offset_origin};
+use raytrace::{Hit, offset_origin};
 use sampling::estimate::{Doubling, Verdict};
 use sampling::frame::Frame;
 use sh_math::{Bands, rotate::Rotation};
@@ -38,6 +43,8 @@ pub(crate) struct Gatherer<'a> {
 pub(crate) struct Gathered {
     /// Direct transfer in world axes.
     pub(crate) transfer: Vec<f32>,
+    /// The same per channel, `[channel of 3][coefficient]`, where translucent surfaces tint what they pass; else empty.
+    pub(crate) tinted: Vec<f32>,
     /// Cosine-weighted share of the hemisphere that is open.
     pub(crate) openness: f32,
     /// Estimated error of `transfer` against the norm of an open receiver.
@@ -56,39 +63,6 @@ pub(crate) struct Gathered {
     pub(crate) glint: Vec<f32>,
     /// The same surfaces, with the share that they send on of light from other surfaces.
     pub(crate) late: Vec<PackedHit>,
-}
-
-/// Buffers that a thread keeps between receivers. Contents never change results.
-pub(crate) struct Worker {
-    fan: FanState,
-    /// World directions of the set, and those of them that a step traces.
-    directions: [Vec<f32>; 3],
-    traced: [Vec<f32>; 3],
-    /// What the traced directions met: a bit each.
-    met: Vec<u64>,
-    choice: Choice,
-    /// 1 where a direction is blocked, 0 where it is open.
-    blocked: Vec<u8>,
-    /// What each direction adds to the open sum.
-    open: Vec<f32>,
-    wanted: Vec<u64>,
-    nearest: Vec<Option<Hit>>,
-}
-
-impl Worker {
-    pub(crate) fn new() -> Self {
-        Self {
-            fan: FanState::default(),
-            directions: Default::default(),
-            traced: Default::default(),
-            met: Vec::new(),
-            choice: Choice::default(),
-            blocked: Vec::new(),
-            open: Vec::new(),
-            wanted: Vec::new(),
-            nearest: Vec::new(),
-        }
-    }
 }
 
 impl Gatherer<'_> {
@@ -120,7 +94,11 @@ impl Gatherer<'_> {
             visibility_rays: seen.rays,
             ..Gathered::default()
         };
-        Rotation::from_matrix(self.bands, world_from_local.as_dmat3()).apply(&mut out.transfer);
+        let rotation = Rotation::from_matrix(self.bands, world_from_local.as_dmat3());
+        rotation.apply(&mut out.transfer);
+        if self.world.tints() {
+            out.tinted = self.tinted(set, seen.step, &rotation, worker);
+        }
         (out, seen.step)
     }
 
@@ -131,6 +109,7 @@ impl Gatherer<'_> {
             Quality::Rays(n) => n as usize,
             Quality::Error(_) => MAX_BLOCKERS,
         };
+        let hits = if self.world.translucent.is_some() { hits * CROSSED } else { hits };
         let bytes = hits * size_of::<PackedHit>() + self.bands.coefficients() * size_of::<f32>() + 256;
         ((256 << 20) / bytes).max(1)
     }
@@ -157,6 +136,7 @@ impl Gatherer<'_> {
         worker.directions.iter_mut().for_each(Vec::clear);
         worker.blocked.clear();
         worker.open.clear();
+        worker.tints.iter_mut().for_each(Vec::clear);
         let mut progress = rule.start();
         let mut sums = vec![0.0f64; self.bands.coefficients()];
         let (mut open_weight, mut start) = (0.0, 0);
@@ -173,7 +153,9 @@ impl Gatherer<'_> {
             seen.step = number;
             seen.openness = open_weight / step.weight;
             seen.local = self.corrected(&sums, seen.openness, step);
-            match rule.look(&mut progress, step.end as u32, &self.bank.domain.judged(&seen.local)) {
+            let darkest = self.darkest(set, number, worker);
+            let judged = self.bank.domain.judged(darkest.as_ref().unwrap_or(&seen.local));
+            match rule.look(&mut progress, step.end as u32, &judged) {
                 Verdict::Continue { .. } => {}
                 // Too few rays to tell so small an error, whatever they met.
                 Verdict::Reached { .. }
@@ -218,7 +200,7 @@ impl Gatherer<'_> {
 
     /// Traces the rays chosen of the step of directions `range`; returns their number.
     fn trace_step(&self, origin: Vec3, range: std::ops::Range<usize>, worker: &mut Worker) -> u64 {
-        let Worker { fan, directions, traced, met, choice, blocked, open, .. } = worker;
+        let Worker { fan, directions, traced, met, choice, blocked, open, passed, tints, crossings, .. } = worker;
         let rays = choice.traced.len();
         met.clear();
         met.resize(rays.div_ceil(64), 0);
@@ -233,7 +215,15 @@ impl Gatherer<'_> {
         };
         let solid = |triangle, u, v| self.world.solid(triangle, u, v);
         self.world.tracer.occluded_fan(origin, xs, ys, zs, &solid, fan, met);
-        choice.settle(range.start, met, blocked, open);
+        let mut means = Vec::new();
+        if let Some(layer) = &self.world.translucent {
+            self.pass(layer, (origin, [xs, ys, zs]), met, crossings, passed);
+            means.extend(passed.iter().map(|&share| if layer.tints { mean(share) } else { share.x }));
+            for (c, open) in tints.iter_mut().enumerate().filter(|_| layer.tints) {
+                choice.settle_channel(range.start, met, |k| passed[k][c], blocked, open);
+            }
+        }
+        choice.settle(range.start, met, &means, blocked, open);
         rays as u64
     }
 
@@ -259,11 +249,11 @@ impl Gatherer<'_> {
             Quality::Error(_) if index < self.permanent => MAX_BLOCKERS,
             Quality::Error(_) => HELPER_BLOCKERS,
         };
-        let blocked: usize = worker.blocked.iter().map(|&b| b as usize).sum();
+        let blocked = worker.blocked.iter().filter(|&&state| state != 0).count();
         worker.wanted.clear();
         worker.wanted.resize(end.div_ceil(64), 0);
         let chosen = blocked.min(wanted);
-        let all_blocked = (0..end).filter(|&j| worker.blocked[j] == 1);
+        let all_blocked = (0..end).filter(|&j| worker.blocked[j] != 0);
         for (before, j) in all_blocked.enumerate() {
             // The k-th of the chosen is the first that reaches k / chosen of all blocked.
             if (before + 1) * chosen / blocked > before * chosen / blocked {
@@ -285,6 +275,10 @@ impl Gatherer<'_> {
         let origin = offset_origin(receiver.position, receiver.geometric_normal);
         let (set, _) = self.bank.pick(index);
         let rays = self.trace_blockers(origin, set.steps[step].end, index, worker);
+        if let Some(layer) = &self.world.translucent {
+            let blockers = self.blockers_through(layer, origin, &set.weights, openness, worker);
+            return Blockers { rays, ..blockers };
+        }
         let found = worker.nearest.iter().enumerate().filter_map(|(j, hit)| hit.map(|hit| (j, hit)));
         // A direction that was foreseen to be open and is not stands for its like that were not tried.
         let weight = |j: usize| f64::from(set.weights[j]) * f64::from(1.0 - worker.open[j]);
@@ -299,7 +293,7 @@ impl Gatherer<'_> {
         let [xs, ys, zs] = &worker.directions;
         let direction = |j: usize| Vec3::new(xs[j], ys[j], zs[j]);
         let found = found.into_iter().map(|(j, hit, weight)| (direction(j), hit, (weight * scale) as f32));
-        Blockers { rays, inside_share: (inside / total) as f32, found: found.collect() }
+        Blockers { rays, inside_share: (inside / total) as f32, found: found.collect(), filters: Vec::new() }
     }
 
     fn pack(&self, blockers: Blockers, index: u32, out: &mut Gathered) {
@@ -309,14 +303,15 @@ impl Gatherer<'_> {
             return;
         }
         let found = blockers.found;
-        let weighed: Vec<(Hit, Vec3)> =
+        let mut weighed: Vec<(Hit, Vec3)> =
             found.iter().map(|(_, hit, weight)| (*hit, self.world.sent(hit) * *weight)).collect();
+        weighed.iter_mut().zip(&blockers.filters).for_each(|((_, reflected), filter)| *reflected *= *filter);
         if index < self.permanent && !crate::repair::is_inside(out.openness, out.inside_share) {
             out.near = near_points(self.world, &weighed, self.worth);
         }
         out.hits.extend(weighed.iter().map(|(hit, reflected)| packed(hit, *reflected, &out.near)));
         if let Some(mirrors) = self.mirrors {
-            mirrors.add_mirrored(self.world, &found, out);
+            mirrors.add_mirrored(self.world, (&found, &blockers.filters), out);
         }
     }
 }
@@ -327,6 +322,9 @@ const PROBES: usize = 32;
 const MAX_BLOCKERS: usize = 1024;
 /// The same for receivers that only lend light to others: many together make up what one of those sees.
 const HELPER_BLOCKERS: usize = 256;
+
+/// Translucent surfaces that a ray is taken to cross where memory is set aside.
+const CROSSED: usize = 8;
 
 /// Changes of the estimate that count for its error. More would lean on how errors fell when the directions were few.
 const REMEMBERED: usize = 4;
@@ -340,6 +338,8 @@ pub(crate) struct Blockers {
     pub(crate) inside_share: f32,
     /// World directions, what they meet, and their weights, which sum to what is not open.
     pub(crate) found: Vec<(Vec3, Hit, f32)>,
+    /// Of each: the factor of its light on the way through translucent surfaces, RGB; empty where there are none.
+    pub(crate) filters: Vec<Vec3>,
 }
 
 /// What the any-hit rays found, in the local frame.

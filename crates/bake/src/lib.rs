@@ -4,8 +4,8 @@
 //! that holds, per vertex, a transfer vector: its dot product with the coefficients of a light, times the albedo,
 //! is the radiance that the vertex sends out. \[G\] eq. (8) to (11), with the printed errors corrected.
 //!
-//! Light is carried between diffuse, two-sided surfaces. What blends or transmits lets light pass, emission is
-//! drawn but not transported, and a mask's empty parts do not exist for rays.
+//! Light is carried between diffuse, two-sided surfaces. What blends or transmits stops the share of light that it covers,
+//! emission is drawn but not transported, and a mask's empty parts do not exist for rays.
 
 mod account;
 mod albedo;
@@ -45,6 +45,7 @@ pub mod settings;
 mod split;
 mod storage;
 mod survey;
+mod transmittance;
 mod volume;
 mod wanted;
 mod world;

@@ -19,6 +19,12 @@ pub(crate) struct Facts {
     pub(crate) blocks: bool,
     /// Whether it blends or transmits.
     pub(crate) transmits: bool,
+    /// Whether it stops a part of the light and passes another.
+    pub(crate) translucent: bool,
+    /// Largest share of light from behind that it hides: 1 where rays stop at it.
+    pub(crate) opacity: f32,
+    /// Whether light that passes through it takes its colour.
+    pub(crate) stains: bool,
     /// Whether it has an alpha mask.
     pub(crate) masked: bool,
     /// Share of the mask's texels below the cutoff, at most; 0 only where no point of the surface can be missing.
@@ -48,11 +54,18 @@ impl Facts {
         let gloss = Colors::linear(scene, material.metallic_roughness_texture);
         let metallic = material.metallic * gloss.largest.z;
         let color = Colors::srgb(scene, material.base_color_texture).largest * material.base_color.truncate();
+        let passed = passes(scene, material, index);
+        let translucent = !material.blocks_rays() && passed > 0.0;
+        let opacity = if translucent { opacity(scene, material, index) } else { 1.0 };
+        let clear = material.transmission > 0.0 && !is_white(scene, material, index);
         let glow = Colors::srgb(scene, material.emissive_texture).largest * material.emissive;
         Self {
             albedo,
-            blocks: material.blocks_rays(),
+            blocks: !translucent,
             transmits: !material.blocks_rays(),
+            translucent: translucent && (opacity > 0.0 || clear),
+            opacity,
+            stains: translucent && clear && is_colored(scene, material, index),
             masked: material.is_masked(),
             holes: hole_share(scene, index),
             shines: metallic > METALLIC || material.roughness * gloss.smallest.y < SHINY,
@@ -60,7 +73,7 @@ impl Facts {
             reflectance: DIELECTRIC.max(metallic * color.max_element()).min(1.0),
             bumpy: material.normal_texture.is_some(),
             emission: glow.max_element(),
-            passes: passes(scene, material, index),
+            passes: passed,
         }
     }
 
@@ -69,6 +82,9 @@ impl Facts {
             albedo,
             blocks: false,
             transmits: false,
+            translucent: false,
+            opacity: 0.0,
+            stains: false,
             masked: false,
             holes: 0.0,
             shines: false,
@@ -78,6 +94,11 @@ impl Facts {
             emission: 0.0,
             passes: 0.0,
         }
+    }
+
+    /// Whether light that falls on it from elsewhere meets it.
+    pub(crate) fn scatters(&self) -> bool {
+        self.blocks || self.translucent && self.opacity > 0.0
     }
 
     /// Whether a surface of this material scatters no light, whatever arrives.
@@ -111,6 +132,28 @@ fn passes(scene: &Scene, material: &Material, index: usize) -> f32 {
     let least = texels.and_then(|t| t.iter().map(|texel| texel[3]).min()).map_or(1.0, |a| f32::from(a) / 255.0);
     let covered = material.base_color.w * vertex_alpha(scene, index) * least;
     (1.0 - covered * (1.0 - material.transmission)).clamp(0.0, 1.0)
+}
+
+/// Largest share of light from behind that a surface that transmits or blends hides.
+fn opacity(scene: &Scene, material: &Material, index: usize) -> f32 {
+    let hidden = (1.0 - material.transmission).clamp(0.0, 1.0);
+    if material.alpha != AlphaMode::Blend {
+        return hidden;
+    }
+    let texels = material.base_color_texture.map(|slot| &scene.textures[slot.texture as usize].rgba);
+    let most = texels.and_then(|t| t.iter().map(|texel| texel[3]).max()).map_or(1.0, |a| f32::from(a) / 255.0);
+    let meshes = scene.meshes.iter().filter(|mesh| mesh.material as usize == index);
+    let vertices = meshes.map(|m| if m.colors.is_empty() { 1.0 } else { m.colors.iter().fold(0.0, |a, c| c.w.max(a)) });
+    (material.base_color.w * most * vertices.fold(0.0, f32::max)).clamp(0.0, 1.0) * hidden
+}
+
+/// Whether the base colour is white everywhere, so that nothing is absorbed of what it transmits.
+fn is_white(scene: &Scene, material: &Material, index: usize) -> bool {
+    let mut meshes = scene.meshes.iter().filter(|mesh| mesh.material as usize == index);
+    let texels = material.base_color_texture.map(|slot| &scene.textures[slot.texture as usize].rgba);
+    material.base_color.truncate().min_element() >= 1.0
+        && texels.is_none_or(|texels| texels.iter().all(|texel| texel[..3] == [255; 3]))
+        && meshes.all(|mesh| mesh.colors.iter().all(|color| color.truncate().min_element() >= 1.0))
 }
 
 /// The least alpha of the vertex colours of a material; 1 where there are none.

@@ -167,14 +167,22 @@ impl Mirrors {
     }
 
     /// Adds what surfaces that shine mirror towards a receiver that sees them, by direction and share.
-    pub(crate) fn add_mirrored(&self, world: &World<'_>, found: &[(Vec3, Hit, f32)], out: &mut Gathered) {
+    pub(crate) fn add_mirrored(
+        &self,
+        world: &World<'_>,
+        (found, filters): (&[(Vec3, Hit, f32)], &[Vec3]),
+        out: &mut Gathered,
+    ) {
         let n = self.light.coefficients();
         let mut lobe = [0.0; (MOST_BANDS * MOST_BANDS) as usize];
         let lobe = &mut lobe[..self.bands.coefficients()];
         let mut row = vec![0.0f32; n];
-        for (direction, hit, weight) in found {
+        for (k, (direction, hit, weight)) in found.iter().enumerate() {
             let Some(met) = self.meet(world, hit, *direction, lobe) else { continue };
-            let glance = self.glance(&met, lobe, &mut row);
+            let mut glance = self.glance(&met, lobe, &mut row);
+            if let Some(filter) = filters.get(k) {
+                glance.tint *= *filter;
+            }
             out.glint.resize(3 * n, 0.0);
             for (sums, tint) in out.glint.chunks_exact_mut(n).zip((glance.tint * *weight).to_array()) {
                 sums.iter_mut().zip(&row).for_each(|(sum, x)| *sum += tint * x);

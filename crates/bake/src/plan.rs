@@ -61,7 +61,10 @@ fn shine(facts: &Facts, plan: &Plan) -> Vec<Shine> {
 pub(crate) fn world<'a>(scene: &'a Scene, facts: &Facts, settings: &Settings) -> Result<World<'a>, Error> {
     let of = &facts.materials;
     let holes = |m: usize| of[m].masked && (is_forced(settings) || of[m].holes > 0.0);
-    World::new(scene, &|m| of[m].blocks, &|m| allowed(settings, Effect::Masks) && holes(m))
+    let mut world = World::new(scene, &|m| of[m].blocks, &|m| allowed(settings, Effect::Masks) && holes(m))?;
+    let tints = allowed(settings, Effect::Color) && facts.stained.any();
+    world.add_translucent(&|m| of[m].translucent, tints)?;
+    Ok(world)
 }
 
 /// What is simulated, before it is put into words.
@@ -118,7 +121,8 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
     let d = Decisions {
         visibility,
         interreflection,
-        color: interreflection && wanted(Effect::Color, facts.colored.any() || glossy && facts.tinted.any()),
+        color: interreflection && wanted(Effect::Color, facts.colored.any() || glossy && facts.tinted.any())
+            || visibility && allowed(settings, Effect::Color) && facts.stained.any(),
         masks: drawn(Effect::Masks, facts.holed.any() || forced && facts.masked.any()),
         specular: drawn(Effect::Specular, facts.shiny.any()),
         glossy,

@@ -176,11 +176,12 @@ impl Table<'_> {
 
     fn color(&self) -> PlanRow {
         let (f, d) = (self.facts, self.decisions);
-        let spread = f.materials.iter().filter(|m| m.blocks && m.albedo.colored).map(|m| m.albedo.spread);
+        let spread = f.materials.iter().filter(|m| m.scatters() && m.albedo.colored).map(|m| m.albedo.spread);
         let stake = spread.fold(0.0, f32::max) * self.survey.coverage[1];
         let words = Words {
             decision: if d.color { "3 channels".into() } else { "1 channel, albedo when drawn".into() },
             reason: match (d.interreflection, f.colored.count()) {
+                _ if d.color && f.stained.any() => format!("light takes the colour of {} materials", f.stained.count()),
                 (false, _) => "no bounces, so colour cannot enter the transfer".into(),
                 (true, 0) => "every surface that reflects is grey: one channel holds all".into(),
                 (true, n) => format!("light bounces off {n} coloured materials"),

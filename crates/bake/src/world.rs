@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::hit::NearPoint;
 use crate::receivers::Receiver;
+use crate::transmittance::Translucent;
 use glam::Vec3;
 use raytrace::{Hit, Tracer};
 use scene::{AlphaMode, Scene};
@@ -21,6 +22,8 @@ pub(crate) struct World<'a> {
     pub(crate) corners: Vec<[u32; 3]>,
     /// Of each traced triangle: its mesh and its index within the mesh.
     sources: Vec<[u32; 2]>,
+    /// Surfaces that stop a part of the light; none where the scene has none. Their triangles come last.
+    pub(crate) translucent: Option<Translucent>,
     /// Whether any traced triangle has a mask.
     has_masks: bool,
     /// Whether rays are traced even for receivers that nothing stands above.
@@ -53,6 +56,7 @@ impl<'a> World<'a> {
             tracer: Tracer::build(&[], &[], &[]),
             corners: Vec::new(),
             sources: Vec::new(),
+            translucent: None,
             has_masks: false,
             trace_all: false,
             shine: Vec::new(),
@@ -82,6 +86,53 @@ impl<'a> World<'a> {
         Ok(world)
     }
 
+    /// Adds the surfaces that stop a part of the light, as `is_translucent` says of materials; `tints` where some of them tint it.
+    pub(crate) fn add_translucent(&mut self, is_translucent: &dyn Fn(usize) -> bool, tints: bool) -> Result<(), Error> {
+        let opaque = self.corners.len();
+        let (mut positions, mut corners) = (Vec::new(), Vec::new());
+        let mut first = 0;
+        for (m, mesh) in self.scene.meshes.iter().enumerate() {
+            if is_translucent(mesh.material as usize) {
+                let own = positions.len() as u32;
+                positions.extend_from_slice(&mesh.positions);
+                corners.extend(mesh.triangles.iter().map(|corners| corners.map(|v| v + own)));
+                self.corners.extend(mesh.triangles.iter().map(|corners| corners.map(|v| v + first)));
+                self.sources.extend((0..mesh.triangles.len() as u32).map(|t| [m as u32, t]));
+                check_count(self.scene, "triangles", self.corners.len(), MAX_TRIANGLES)?;
+            }
+            first += mesh.positions.len() as u32;
+        }
+        if !corners.is_empty() {
+            let tracer = Tracer::build(&positions, &corners, &vec![true; corners.len()]);
+            self.translucent = Some(Translucent { tracer, first: opaque as u32, tints });
+        }
+        Ok(())
+    }
+
+    /// Share of the light from behind that a translucent triangle hides at a point, and the share that it passes, RGB: all of it beside
+    /// what is covered, and through what is covered the part that it transmits, in its base colour.
+    pub(crate) fn translucency(&self, triangle: u32, u: f32, v: f32) -> (f32, Vec3) {
+        let (mesh, local) = self.locate(triangle);
+        let covered = self.scene.coverage(mesh, local, u, v);
+        let transmission = self.scene.material(mesh).transmission.clamp(0.0, 1.0);
+        let beside = Vec3::splat(1.0 - covered);
+        if transmission <= 0.0 {
+            return (covered, beside);
+        }
+        let tint = self.scene.base_color(mesh, local, u, v).truncate().clamp(Vec3::ZERO, Vec3::ONE);
+        (covered * (1.0 - transmission), beside + covered * transmission * tint)
+    }
+
+    /// Whether some surfaces tint the light that they pass.
+    pub(crate) fn tints(&self) -> bool {
+        self.translucent.as_ref().is_some_and(|layer| layer.tints)
+    }
+
+    /// Whether a traced triangle is translucent.
+    pub(crate) fn is_translucent(&self, triangle: u32) -> bool {
+        self.translucent.as_ref().is_some_and(|layer| triangle >= layer.first)
+    }
+
     /// Whether rays are needed: where something can stand between a receiver and the sky, and what arrives shows.
     pub(crate) fn can_shadow(&self, receiver: &Receiver) -> bool {
         !receiver.dark && (self.trace_all && receiver.sound || self.anything_above(receiver))
@@ -90,7 +141,8 @@ impl<'a> World<'a> {
     /// Whether anything stands above the tangent plane of a receiver, exactly, through the tree.
     pub(crate) fn anything_above(&self, receiver: &Receiver) -> bool {
         let Receiver { vertex, normal, .. } = *receiver;
-        receiver.sound && (self.tracer.anything_above(vertex, normal) || self.touches(receiver))
+        let veiled = || self.translucent.as_ref().is_some_and(|layer| layer.tracer.anything_above(vertex, normal));
+        receiver.sound && (self.tracer.anything_above(vertex, normal) || self.touches(receiver) || veiled())
     }
 
     /// Whether a surface that faces the receiver lies between its tangent plane and itself. On a curved surface a receiver is drawn

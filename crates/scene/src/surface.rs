@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3, Vec4};
 use crate::{AlphaMode, Material, Mesh, Scene, TextureSlot};
 
 impl Material {
-    /// Whether a ray stops here: surfaces that blend or transmit let it pass.
+    /// Whether a ray stops here: surfaces that blend or transmit let a share of its light pass.
     pub fn blocks_rays(&self) -> bool {
         self.alpha != AlphaMode::Blend && self.transmission <= 0.0
     }

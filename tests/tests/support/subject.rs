@@ -32,9 +32,13 @@ pub(crate) struct Subject {
 impl Subject {
     /// Bakes a scene and draws `count` receivers.
     pub(crate) fn bake(scene: Scene, bounces: Bounces, quality: Quality, count: usize) -> Self {
-        let settings = Settings { bounces, quality, ..bake::settings::standard() };
-        let prt = bake::bake(&scene, &settings, &|_| ControlFlow::Continue(())).expect("the scene bakes");
-        let all = Receivers::of(&bake::refine(&scene, &settings).expect("the bake has split it before"));
+        Self::bake_with(scene, &Settings { bounces, quality, ..bake::settings::standard() }, count)
+    }
+
+    /// The same with settings of one's own.
+    pub(crate) fn bake_with(scene: Scene, settings: &Settings, count: usize) -> Self {
+        let prt = bake::bake(&scene, settings, &|_| ControlFlow::Continue(())).expect("the scene bakes");
+        let all = Receivers::of(&bake::refine(&scene, settings).expect("the bake has split it before"));
         let receivers = all.list[..all.permanent].to_vec();
         assert_eq!(prt.geometry.positions.len(), receivers.len(), "rows of the transfer are the receivers, in order");
         let (rows, left_out) = draw(&scene, &receivers, count);

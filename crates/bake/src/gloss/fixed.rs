@@ -80,7 +80,7 @@ impl<'a> FixedBounces<'a> {
     /// What surfaces send to a point in the bounce after that of a table, RGB per coefficient.
     fn bounce(&self, table: usize, found: &Found) -> Vec<[f32; 3]> {
         let mut send = |hit: &Hit, direction: Vec3, out: &mut [f32]| self.send(table, hit, direction, out);
-        let flat = found.gather(self.mirrors.bands, 3, &mut send);
+        let flat = found.gather(self.mirrors.bands, [1, 3], &mut send);
         flat.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
     }
 
