@@ -1,6 +1,7 @@
 //! Who draws: the GPU where there is one, the CPU anywhere.
 
 use crate::console::Console;
+use crate::silence::silenced;
 use anyhow::Result;
 use coeff_io::Prt;
 use probe_io::Environment;
@@ -33,7 +34,7 @@ pub(crate) struct Drawer<'a> {
 pub(crate) enum Window {
     /// Nothing: the light as its coefficients have it.
     None,
-    /// The mildest window under which the light is nowhere negative.
+    /// The mildest window under which the light is nowhere negative; none where nothing rings.
     Auto,
 }
 
@@ -42,7 +43,7 @@ impl Window {
     pub(crate) fn apply(self, light: &sh_math::Rgb) -> sh_math::Rgb {
         match self {
             Self::None => light.clone(),
-            Self::Auto => light.windowed(&sh_math::window::automatic(light)),
+            Self::Auto => sh_math::window::without_ringing(light),
         }
     }
 }
@@ -62,23 +63,17 @@ impl<'a> Drawer<'a> {
         console: &Console,
     ) -> Result<Self> {
         let renderer = match backend {
-            Backend::Cpu => cpu(prt, environment)?,
-            Backend::Gpu => gpu(prt, environment, console)?,
-            Backend::Auto => match gpu(prt, environment, console) {
+            Backend::Cpu => {
+                console.notice("drawing on the CPU");
+                cpu(prt, environment, window)?
+            }
+            Backend::Gpu => gpu(prt, environment, window, console)?,
+            Backend::Auto => match gpu(prt, environment, window, console) {
                 Ok(renderer) => renderer,
-                Err(error) => stand_in(prt, environment, &error, console)?,
+                Err(error) => stand_in(prt, environment, window, &error, console)?,
             },
         };
-        let mut drawer = Self { prt, environment, backend, renderer, window };
-        drawer.apply_window();
-        Ok(drawer)
-    }
-
-    fn apply_window(&mut self) {
-        match &mut self.renderer {
-            Renderer::Gpu(renderer) => renderer.set_light(self.window.apply(renderer.light())),
-            Renderer::Cpu(renderer) => renderer.set_light(self.window.apply(renderer.light())),
-        }
+        Ok(Self { prt, environment, backend, renderer, window })
     }
 
     /// Draws one picture.
@@ -90,8 +85,7 @@ impl<'a> Drawer<'a> {
         match drawn {
             Ok(render_wgpu::Image { width, height, linear, display }) => Ok(Image { width, height, linear, display }),
             Err(error) if self.backend == Backend::Auto => {
-                self.renderer = stand_in(self.prt, self.environment, &error.into(), console)?;
-                self.apply_window();
+                self.renderer = stand_in(self.prt, self.environment, self.window, &error.into(), console)?;
                 self.draw(frame, console)
             }
             Err(error) => Err(error.into()),
@@ -107,24 +101,38 @@ impl<'a> Drawer<'a> {
     }
 }
 
-fn cpu<'a>(prt: &'a Prt, environment: &'a Environment) -> Result<Renderer<'a>> {
-    Ok(Renderer::Cpu(Box::new(render_cpu::Renderer::new(prt, environment)?)))
+fn cpu<'a>(prt: &'a Prt, environment: &'a Environment, window: Window) -> Result<Renderer<'a>> {
+    let renderer = match window {
+        Window::Auto => render_cpu::Renderer::new(prt, environment)?,
+        Window::None => render_cpu::Renderer::without_window(prt, environment)?,
+    };
+    Ok(Renderer::Cpu(Box::new(renderer)))
 }
 
-fn gpu<'a>(prt: &Prt, environment: &Environment, console: &Console) -> Result<Renderer<'a>> {
-    let gpu = Gpu::new(Driver::Any)?;
-    console.detail(&format!("drawing on {}", gpu.description()));
-    Ok(Renderer::Gpu(Box::new(render_wgpu::Renderer::new(&gpu, prt, environment)?)))
+fn gpu<'a>(prt: &Prt, environment: &Environment, window: Window, console: &Console) -> Result<Renderer<'a>> {
+    let gpu = silenced(|| Gpu::new(Driver::Any))?;
+    let renderer = match window {
+        Window::Auto => render_wgpu::Renderer::new(&gpu, prt, environment)?,
+        Window::None => render_wgpu::Renderer::without_window(&gpu, prt, environment)?,
+    };
+    let kind = if gpu.is_software() { "a software driver" } else { "the GPU" };
+    console.notice(&format!("drawing on {kind}: {}", gpu.description()));
+    Ok(Renderer::Gpu(Box::new(renderer)))
 }
 
 fn stand_in<'a>(
     prt: &'a Prt,
     environment: &'a Environment,
+    window: Window,
     error: &anyhow::Error,
     console: &Console,
 ) -> Result<Renderer<'a>> {
-    console.notice(&format!("drawing on the CPU: {error:#}"));
-    cpu(prt, environment)
+    let text = match error.downcast_ref() {
+        Some(render_wgpu::Error::NoAdapter { .. }) => "drawing on the CPU: no graphics driver was found".to_owned(),
+        _ => format!("drawing on the CPU: {error:#}"),
+    };
+    console.notice(&text);
+    cpu(prt, environment, window)
 }
 
 fn for_gpu(frame: &Frame) -> render_wgpu::Frame {

@@ -31,7 +31,7 @@ pub(crate) struct ExtraOptions {
     /// for export: moving objects (render --visitor) want one that can be relit.
     #[arg(long, value_enum, default_value_t = LightMode::Relightable)]
     light: LightMode,
-    /// What is done against ringing of a fixed light; nothing where not given.
+    /// What is done against ringing of a fixed light; auto where not given.
     #[arg(long, value_enum)]
     window: Option<Window>,
 }
@@ -162,7 +162,7 @@ impl ExtraOptions {
             (LightMode::Fixed, Some((probe, read))) => {
                 // The bounces of gloss take all bands that reach a product; light maps and volumes the first of them.
                 let bands = if place == Place::Maps { bands } else { 2 * bands - 1 };
-                Ok(Some(fixed_light(&probe.load(read, console)?, bands, self.window.unwrap_or(Window::None))?))
+                Ok(Some(fixed_light(&probe.load(read, console)?, bands, self.window.unwrap_or(Window::Auto))?))
             }
         }
     }

@@ -29,6 +29,7 @@ mod reference;
 mod render;
 mod settings;
 mod sheets;
+mod silence;
 mod source;
 mod timed;
 mod usage;

@@ -48,9 +48,9 @@ pub(crate) struct Options {
     /// The light: full, or what N bands hold of it.
     #[arg(long, value_name = "full|bands:N", default_value = "full", value_parser = light)]
     light: Truth,
-    /// What is done against ringing of the light of few bands, as `render` does it.
-    #[arg(long, value_enum, default_value_t = Window::None)]
-    window: Window,
+    /// What is done against ringing of the light of few bands, as `render` does it; auto where not given.
+    #[arg(long, value_enum)]
+    window: Option<Window>,
     /// What surfaces that shine mirror, besides their diffuse part.
     #[arg(long, value_enum, default_value_t = Specular::Ggx)]
     specular: Specular,
@@ -141,11 +141,11 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let camera = lens::of_scene(options.camera.as_ref(), &scene)?;
     let environment = options.probe.load(console)?;
     let light = match options.light {
-        Truth::Full if options.window != Window::None => {
+        Truth::Full if options.window.is_some() => {
             return Err(Usage("--window is for the light of few bands: give --light bands:N too".into()).into());
         }
         Truth::Full => Light::new(&environment),
-        Truth::Bands(bands) => band_limited(bands, options.window, &environment)?,
+        Truth::Bands(bands) => band_limited(bands, options.window.unwrap_or(Window::Auto), &environment)?,
     };
     let max_bounces = match options.bounces {
         Bounces::Auto => None,

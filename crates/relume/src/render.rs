@@ -64,7 +64,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 2)]
     supersample: u32,
     /// What is done against ringing under a strong small light; see docs/shading.md.
-    #[arg(long, value_enum, default_value_t = Window::None)]
+    #[arg(long, value_enum, default_value_t = Window::Auto)]
     window: Window,
     /// What is drawn behind the scene.
     #[arg(long, value_enum, default_value_t = Background::Sky)]

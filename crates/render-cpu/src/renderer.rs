@@ -34,7 +34,7 @@ const CHUNK: usize = 4096;
 pub struct Renderer<'a> {
     prt: &'a Prt,
     environment: &'a Environment,
-    /// Coefficients of the light as the probe holds it, in as many bands as transfer or maps have.
+    /// Coefficients of the light as it is shown, in as many bands as transfer or maps have.
     light: sh_math::Rgb,
     /// Bands of the transfer.
     bands: Bands,
@@ -63,11 +63,22 @@ pub fn render(prt: &Prt, environment: &Environment, frame: &Frame) -> Result<Ima
 }
 
 impl<'a> Renderer<'a> {
-    /// Projects the probe and, where a material calls for reflections, prefilters it.
+    /// Projects the probe under the window that keeps it from ringing (none where nothing rings) and, where a material
+    /// calls for reflections, prefilters it.
     ///
     /// # Errors
     /// [`Error::Prt`] where the parts of `prt` do not fit each other.
     pub fn new(prt: &'a Prt, environment: &'a Environment) -> Result<Self, Error> {
+        let mut renderer = Self::without_window(prt, environment)?;
+        renderer.light = sh_math::window::without_ringing(&renderer.light);
+        Ok(renderer)
+    }
+
+    /// As [`Renderer::new`], but with the light as its coefficients have it: it may be negative in places.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn without_window(prt: &'a Prt, environment: &'a Environment) -> Result<Self, Error> {
         check::check(prt)?;
         let unsupported = || Error::Prt(format!("a transfer of {} bands, which is not supported", prt.transfer.bands));
         let bands = Bands::new(prt.transfer.bands).ok_or_else(unsupported)?;

@@ -41,7 +41,7 @@ fn a_white_furnace_mirrors_exactly_its_share() {
     let sky = sky();
     for storage in STORAGES {
         let prt = metal_wall(storage, 0.5, &belt(0.0, 1.0), None);
-        let renderer = Renderer::new(&prt, &sky).expect("a sound scene");
+        let renderer = Renderer::without_window(&prt, &sky).expect("a sound scene");
         let all = Lobe::ALL.into_iter().flat_map(|lobe| ROUGHNESSES.map(|roughness| (lobe, roughness)));
         for (lobe, roughness) in all {
             for tail in [false, true] {
@@ -61,7 +61,7 @@ fn a_furnace_half_blocked_by_white_surfaces_is_still_one() {
     for storage in STORAGES {
         let closed = metal_wall(storage, 0.5, &open, Some(bounced(&belt(0.0, 0.6))));
         let leaking = metal_wall(storage, 0.5, &open, None);
-        let [closed, leaking] = [&closed, &leaking].map(|prt| Renderer::new(prt, &sky).expect("a sound scene"));
+        let [closed, leaking] = [&closed, &leaking].map(|prt| Renderer::without_window(prt, &sky).expect("a sound scene"));
         let all = Lobe::ALL.into_iter().flat_map(|lobe| ROUGHNESSES.map(|roughness| (lobe, roughness)));
         for (lobe, roughness) in all {
             let error = furnace_error(&closed, lobe, roughness, false);
@@ -142,7 +142,7 @@ fn an_open_lobe_mirrors_the_prefiltered_light() {
     let environment = Environment::from_function("lamp", 64, lamp);
     let reflection = Reflection::build(&environment, REFLECTION_LEVELS, REFLECTION_WIDTH);
     let prt = metal_wall(Storage::Texels, 0.375, &belt(0.0, 1.0), None);
-    let renderer = Renderer::new(&prt, &environment).expect("a sound scene");
+    let renderer = Renderer::without_window(&prt, &environment).expect("a sound scene");
     let error = |tail| {
         let mut frame = bare(Lobe::Ggx);
         frame.gloss.tail = tail;
@@ -168,7 +168,7 @@ fn a_pixel_is_the_integral_of_light_visibility_and_lobe() {
     for (lobe, roughness) in [(Lobe::Ggx, 0.375), (Lobe::Phong, 0.625)] {
         for tail in [None, Some(&reflection)] {
             let prt = metal_wall(Storage::Texels, roughness, &visibility, None);
-            let mut renderer = Renderer::new(&prt, &environment).expect("a sound scene");
+            let mut renderer = Renderer::without_window(&prt, &environment).expect("a sound scene");
             renderer.set_light(light());
             let mut frame = bare(lobe);
             frame.rotation = Quat::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), 1.1);

@@ -164,7 +164,7 @@ fn against_a_tilted_wall(basis: Basis, rotation: Quat) -> f64 {
         (0..tilted.geometry.positions.len()).flat_map(|_| open_transfer(unit(NORMAL, 1.0).as_vec3())).collect();
     let environment = sky();
     let [ours, theirs] = [&mapped, &tilted].map(|prt| {
-        let mut renderer = Renderer::new(prt, &environment).expect("a sound scene");
+        let mut renderer = Renderer::without_window(prt, &environment).expect("a sound scene");
         renderer.set_light(light());
         renderer.draw(&Frame { rotation, ..frame() }).expect("a sound frame").linear
     });
@@ -190,7 +190,7 @@ fn set_light_and_rotations_reach_the_maps_again_and_again() {
     let mut prt = bumpy_wall(Some(NORMAL));
     prt.maps = Some(maps(Basis::H4, MapLight::Relightable { bands: 2 }, [1, 1], &open_answers(Basis::H4)));
     let environment = sky();
-    let mut renderer = Renderer::new(&prt, &environment).expect("a sound scene");
+    let mut renderer = Renderer::without_window(&prt, &environment).expect("a sound scene");
     let draw = |renderer: &Renderer<'_>, turn: f32| {
         let frame = Frame { rotation: Quat::from_rotation_y(turn), ..frame() };
         renderer.draw(&frame).expect("a sound frame").linear

@@ -269,7 +269,7 @@ fn only_what_mirrors_blurs_the_probe() {
     let sky = Environment::constant([1.0; 3]);
     let levels = |material: Material| {
         let prt = wall(material);
-        render_cpu::Renderer::new(&prt, &sky).expect("a sound scene").reflection_levels()
+        render_cpu::Renderer::without_window(&prt, &sky).expect("a sound scene").reflection_levels()
     };
     assert_eq!(levels(white()), 0);
     assert_eq!(levels(Material { alpha: AlphaMode::Mask(0.5), emissive: [1.0; 3], metallic: 1.0, ..white() }), 0);

@@ -158,7 +158,7 @@ fn texels_follow_the_light_and_leave_other_meshes_alone() {
     handmade::add_triangles(&mut prt, white(), &half);
     prt.geometry.uv1.resize(prt.geometry.positions.len(), [0.0; 2]);
     prt.transfer_textures.as_mut().expect("textures").sheet_of_mesh.push(None);
-    let mut renderer = Renderer::new(&prt, &environment).expect("a sound scene");
+    let mut renderer = Renderer::without_window(&prt, &environment).expect("a sound scene");
     let mut red = |rotation| {
         let picture = renderer.draw(&Frame { rotation, ..front(SIZE) }).expect("a picture").linear;
         renderer.set_light(renderer.light().clone());

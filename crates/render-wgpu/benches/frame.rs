@@ -26,7 +26,7 @@ fn renderer(shiny: bool, frame: &Frame) -> Option<Renderer> {
     if !shiny {
         prt.materials.iter_mut().for_each(|material| material.specular = false);
     }
-    let mut renderer = Renderer::new(&gpu, &prt, &handmade::environment()).ok()?;
+    let mut renderer = Renderer::without_window(&gpu, &prt, &handmade::environment()).ok()?;
     renderer.time(frame).ok()?;
     Some(renderer)
 }
@@ -58,7 +58,7 @@ fn mapped(frame: &Frame) -> Option<Renderer> {
     let mut prt = handmade::mapped(Basis::ModifiedH6, &MapLight::Relightable { bands: 3 }, 24);
     prt.materials.iter_mut().for_each(|material| material.specular = false);
     prt.materials[0].normal_texture = prt.materials[2].normal_texture;
-    let mut renderer = Renderer::new(&gpu, &prt, &handmade::environment()).ok()?;
+    let mut renderer = Renderer::without_window(&gpu, &prt, &handmade::environment()).ok()?;
     renderer.time(frame).ok()?;
     Some(renderer)
 }

@@ -23,25 +23,26 @@ pub struct Gpu {
     /// Blending into them; without it blended scenes are drawn in 16-bit floats.
     pub(crate) blends_float32: bool,
     description: String,
+    software: bool,
 }
 
 impl Gpu {
-    /// Opens a device through Vulkan, Metal, DirectX 12 or OpenGL, whichever the machine has.
+    /// Opens a device through Vulkan, Metal or DirectX 12, and through OpenGL where none of them answers.
     ///
     /// The variable `WGPU_BACKEND` (`vulkan`, `gl`, ...) narrows the choice.
     ///
     /// # Errors
     /// [`Error::NoAdapter`] where no driver is installed, [`Error::NoDevice`] where it fails to start.
     pub fn new(driver: Driver) -> Result<Self, Error> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            force_fallback_adapter: driver == Driver::Software,
-            ..Default::default()
+        let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        // Only the look for an OpenGL driver writes to the console of its own accord, so it comes last.
+        let gl = descriptor.backends & wgpu::Backends::GL;
+        let others = descriptor.backends - wgpu::Backends::GL;
+        let adapter = match adapter(others, driver) {
+            Err(_) if !gl.is_empty() => adapter(gl, driver),
+            found => found,
         };
-        let adapter = pollster::block_on(instance.request_adapter(&options))
-            .map_err(|error| Error::NoAdapter { reason: one_line(&error.to_string()) })?;
-        Self::open(&adapter)
+        Self::open(&adapter?)
     }
 
     fn open(adapter: &wgpu::Adapter) -> Result<Self, Error> {
@@ -62,7 +63,8 @@ impl Gpu {
         let float32 = adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float);
         let draws_float32 = float32.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
         let blends_float32 = draws_float32 && features.contains(wgpu::Features::FLOAT32_BLENDABLE);
-        Ok(Self { device, queue, limits, draws_float32, blends_float32, description })
+        let software = info.device_type == wgpu::DeviceType::Cpu;
+        Ok(Self { device, queue, limits, draws_float32, blends_float32, description, software })
     }
 
     /// The format of linear pictures: exact on both sides of the read-back where the adapter can draw it.
@@ -79,6 +81,12 @@ impl Gpu {
     #[must_use]
     pub fn description(&self) -> &str {
         &self.description
+    }
+
+    /// Whether the processor does the work of a graphics device, through a software driver.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.software
     }
 
     /// Runs `work` and turns what the driver complains about into an [`Error::Gpu`].
@@ -103,6 +111,21 @@ impl Gpu {
             .map(drop)
             .map_err(|error| Error::Gpu { doing: "finishing a frame", reason: one_line(&error.to_string()) })
     }
+}
+
+/// The adapter of one of `backends`.
+fn adapter(backends: wgpu::Backends, driver: Driver) -> Result<wgpu::Adapter, Error> {
+    let descriptor = wgpu::InstanceDescriptor {
+        backends,
+        ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+    };
+    let options = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        force_fallback_adapter: driver == Driver::Software,
+        ..Default::default()
+    };
+    pollster::block_on(wgpu::Instance::new(descriptor).request_adapter(&options))
+        .map_err(|error| Error::NoAdapter { reason: one_line(&error.to_string()) })
 }
 
 /// Error texts of wgpu run over many lines; a sentence has one.

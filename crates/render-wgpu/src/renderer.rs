@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
-    /// Coefficients of the probe as it lies, not turned, in as many bands as transfer or maps have.
+    /// Coefficients of the light as it is shown, not turned, in as many bands as transfer or maps have.
     light: Rgb,
     /// Bands of the transfer.
     bands: Bands,
@@ -70,11 +70,22 @@ pub struct Timings {
 }
 
 impl Renderer {
-    /// Uploads the scene and the light and builds the pipelines that they call for.
+    /// Uploads the scene and the light, under the window that keeps it from ringing (none where nothing rings), and builds
+    /// the pipelines that they call for.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a scene that contradicts itself, [`Error::TooLarge`] for one that the GPU cannot hold.
     pub fn new(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
+        let mut renderer = Self::without_window(gpu, prt, environment)?;
+        renderer.light = sh_math::window::without_ringing(&renderer.light);
+        Ok(renderer)
+    }
+
+    /// As [`Renderer::new`], but with the light as its coefficients have it: it may be negative in places.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn without_window(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
         check::check(prt)?;
         gpu.guarded("uploading the scene", || Self::build(gpu, prt, environment))
     }

@@ -173,8 +173,8 @@ fn in_way(way: GlossWay) -> Frame {
 
 /// How far the two renderers are apart in each frame.
 fn compare(gpu: &Gpu, prt: &Prt, environment: &Environment, frames: &[Frame]) -> Vec<Distance> {
-    let twin = render_cpu::Renderer::new(prt, environment).expect("a sound scene");
-    let mut renderer = Renderer::new(gpu, prt, environment).expect("a sound scene");
+    let twin = render_cpu::Renderer::without_window(prt, environment).expect("a sound scene");
+    let mut renderer = Renderer::without_window(gpu, prt, environment).expect("a sound scene");
     let pair = |frame: &Frame| {
         let picture = renderer.draw(frame).expect("a sound frame");
         distance(&picture, &twin.draw(&cpu_frame(frame)).expect("a sound frame"))
@@ -228,9 +228,9 @@ fn pictures_of_gloss_can_fail() {
     let environment = environment();
     for storage in [Storage::Vertices, Storage::Texels] {
         let prt = glossy(4, storage, Held::Exact);
-        let picture = Renderer::new(&gpu, &prt, &environment).unwrap().draw(&frame()).unwrap();
+        let picture = Renderer::without_window(&gpu, &prt, &environment).unwrap().draw(&frame()).unwrap();
         let other = |prt: &Prt, frame: &Frame| {
-            render_cpu::Renderer::new(prt, &environment).unwrap().draw(&cpu_frame(frame)).unwrap()
+            render_cpu::Renderer::without_window(prt, &environment).unwrap().draw(&cpu_frame(frame)).unwrap()
         };
         let rough = Frame { gloss: GlossView { roughness: Some(0.9), ..GlossView::default() }, ..frame() };
         assert!(!distance(&picture, &other(&prt, &rough)).is_small(), "{storage:?}");
@@ -244,7 +244,7 @@ fn pictures_of_gloss_can_fail() {
 fn early_depth_is_the_same_picture() {
     let Some(gpu) = gpu() else { return };
     let prt = glossy(4, Storage::Texels, Held::Bare);
-    let mut renderer = Renderer::new(&gpu, &prt, &environment()).unwrap();
+    let mut renderer = Renderer::without_window(&gpu, &prt, &environment()).unwrap();
     let early = renderer.draw(&frame()).unwrap();
     let late = renderer.draw(&Frame { early_depth: false, ..frame() }).unwrap();
     assert!(early.linear == late.linear);
@@ -257,7 +257,7 @@ fn early_depth_is_the_same_picture() {
 fn the_way_follows_what_changes() {
     let Some(gpu) = gpu() else { return };
     let prt = glossy(5, Storage::Texels, Held::Bare);
-    let mut renderer = Renderer::new(&gpu, &prt, &environment()).unwrap();
+    let mut renderer = Renderer::without_window(&gpu, &prt, &environment()).unwrap();
     let small = Frame { width: 8, height: 8, ..frame() };
     assert_eq!(renderer.gloss_way(), Some(GlossWay::Cache));
     for n in 0..3 {
@@ -268,7 +268,7 @@ fn the_way_follows_what_changes() {
         renderer.time(&small).unwrap();
     }
     assert_eq!(renderer.gloss_way(), Some(GlossWay::Cache));
-    let matt = Renderer::new(&gpu, &sphere_on_plane(1, 12), &environment()).unwrap();
+    let matt = Renderer::without_window(&gpu, &sphere_on_plane(1, 12), &environment()).unwrap();
     assert_eq!(matt.gloss_way(), None);
 }
 
@@ -289,8 +289,8 @@ fn clustered_vertices_are_lit_as_exact_ones() {
         let distance = &compare(&gpu, &prt, &environment(), &[frame])[0];
         assert!(distance.is_small(), "{distance:?}");
     }
-    let picture = Renderer::new(&gpu, &prt, &environment()).unwrap().draw(&turned).unwrap();
-    let other = render_cpu::Renderer::new(&exact, &environment()).unwrap().draw(&cpu_frame(&frame())).unwrap();
+    let picture = Renderer::without_window(&gpu, &prt, &environment()).unwrap().draw(&turned).unwrap();
+    let other = render_cpu::Renderer::without_window(&exact, &environment()).unwrap().draw(&cpu_frame(&frame())).unwrap();
     assert!(!compare::distance(&picture, &other).is_small(), "can fail");
 }
 
@@ -300,18 +300,18 @@ fn what_is_not_there_costs_nothing() {
     let Some(gpu) = gpu() else { return };
     let mut prt = sphere_on_plane(1, 12);
     prt.materials.iter_mut().for_each(|material| material.specular = false);
-    let mut plain = Renderer::new(&gpu, &prt, &environment()).unwrap();
+    let mut plain = Renderer::without_window(&gpu, &prt, &environment()).unwrap();
     plain.time(&frame()).unwrap();
     prt.geometry.uv1 = prt.geometry.positions.iter().map(|p| [p[0] * 0.1 + 0.5, p[2] * 0.1 + 0.5]).collect();
     prt.transfer_textures = Some(textures(&mut prt, Bands::new(3).unwrap(), Held::Bare, false));
-    let mut textured = Renderer::new(&gpu, &prt, &environment()).unwrap();
+    let mut textured = Renderer::without_window(&gpu, &prt, &environment()).unwrap();
     textured.time(&frame()).unwrap();
     assert!(textured.pipelines() <= plain.pipelines() + 1, "{} {}", textured.pipelines(), plain.pipelines());
     let distance = &compare(&gpu, &prt, &environment(), &[frame()])[0];
     assert!(distance.is_small(), "{distance:?}");
     let untextured = Prt { transfer_textures: None, ..prt.clone() };
     let picture = textured.draw(&frame()).unwrap();
-    let other = render_cpu::Renderer::new(&untextured, &environment()).unwrap().draw(&cpu_frame(&frame())).unwrap();
+    let other = render_cpu::Renderer::without_window(&untextured, &environment()).unwrap().draw(&cpu_frame(&frame())).unwrap();
     assert!(!compare::distance(&picture, &other).is_small(), "can fail: the texture must show");
 }
 
@@ -320,7 +320,7 @@ fn what_is_not_there_costs_nothing() {
 fn fixed_bounces_refuse_what_they_do_not_hold() {
     let Some(gpu) = gpu() else { return };
     let prt = glossy(3, Storage::Texels, Held::Fixed);
-    let mut renderer = Renderer::new(&gpu, &prt, &environment()).unwrap();
+    let mut renderer = Renderer::without_window(&gpu, &prt, &environment()).unwrap();
     assert!(renderer.draw(&frame()).is_ok());
     let said =
         |result: Result<render_wgpu::Image, Error>| result.err().map_or(String::new(), |error| error.to_string());
@@ -330,7 +330,7 @@ fn fixed_bounces_refuse_what_they_do_not_hold() {
     assert!(said(renderer.draw(&rough)).contains("materials"));
     let mut other = prt.clone();
     other.materials[0].roughness = 0.1;
-    assert!(said(Renderer::new(&gpu, &other, &environment()).unwrap().draw(&frame())).contains("materials"));
+    assert!(said(Renderer::without_window(&gpu, &other, &environment()).unwrap().draw(&frame())).contains("materials"));
     let sky = Environment::constant([1.0, 2.0, 3.0]);
-    assert!(said(Renderer::new(&gpu, &prt, &sky).unwrap().draw(&frame())).contains("another light"));
+    assert!(said(Renderer::without_window(&gpu, &prt, &sky).unwrap().draw(&frame())).contains("another light"));
 }

@@ -29,8 +29,8 @@ fn matte(basis: Basis, light: &MapLight) -> Prt {
 
 /// How far the two renderers are apart in each frame.
 fn compare(gpu: &Gpu, prt: &Prt, environment: &Environment, frames: &[Frame]) -> Vec<Distance> {
-    let twin = render_cpu::Renderer::new(prt, environment).expect("a sound scene");
-    let mut renderer = Renderer::new(gpu, prt, environment).expect("a sound scene");
+    let twin = render_cpu::Renderer::without_window(prt, environment).expect("a sound scene");
+    let mut renderer = Renderer::without_window(gpu, prt, environment).expect("a sound scene");
     let pair = |frame| {
         let picture = renderer.draw(frame).expect("a sound frame");
         distance(&picture, &twin.draw(&cpu_frame(frame)).expect("a sound frame"))
@@ -91,7 +91,7 @@ fn ordinary_light_maps_beside_directional_ones_agree_with_the_cpu() {
 fn pictures_with_maps_can_fail() {
     let Some(gpu) = gpu() else { return };
     let (environment, prt) = (environment(), matte(Basis::H6, &RELIGHTABLE));
-    let twin = render_cpu::Renderer::new(&prt, &environment).expect("a sound scene");
+    let twin = render_cpu::Renderer::without_window(&prt, &environment).expect("a sound scene");
     let expected = twin.draw(&cpu_frame(&frame())).expect("a sound frame");
     let mut no_bumps = prt.clone();
     no_bumps.materials[2].normal_texture = None;
@@ -122,12 +122,12 @@ fn pictures_with_maps_can_fail() {
 fn maps_build_only_what_they_call_for() {
     let Some(gpu) = gpu() else { return };
     let environment = Environment::constant([1.0; 3]);
-    let pipelines = |prt: &Prt| Renderer::new(&gpu, prt, &environment).expect("a sound scene").pipelines();
+    let pipelines = |prt: &Prt| Renderer::without_window(&gpu, prt, &environment).expect("a sound scene").pipelines();
     let mut hidden = mapped(Basis::H6, &fixed(), 8);
     hidden.maps.as_mut().expect("maps").sheet_of_mesh.fill(None);
     assert_eq!(pipelines(&sphere_on_plane(1, 8)), pipelines(&hidden), "maps that no mesh shows cost nothing");
     let prt = mapped(Basis::H6, &fixed(), 8);
-    let mut renderer = Renderer::new(&gpu, &prt, &environment).expect("a sound scene");
+    let mut renderer = Renderer::without_window(&gpu, &prt, &environment).expect("a sound scene");
     assert_eq!(renderer.pipelines(), 6, "one for each kind of material and light");
     renderer.draw(&Frame { functions: Some(4), ..frame() }).expect("a picture");
     assert_eq!(renderer.pipelines(), 10, "four materials with maps once more");
@@ -139,7 +139,7 @@ fn maps_build_only_what_they_call_for() {
 fn frames_are_the_same_again_after_other_lights_and_bases() {
     let Some(gpu) = gpu() else { return };
     let prt = matte(Basis::Sh9, &RELIGHTABLE);
-    let mut renderer = Renderer::new(&gpu, &prt, &environment()).expect("a sound scene");
+    let mut renderer = Renderer::without_window(&gpu, &prt, &environment()).expect("a sound scene");
     let first = renderer.draw(&frame()).expect("a picture");
     let turned = renderer.draw(&Frame { rotation: rotation(), ..frame() }).expect("a picture");
     let other = renderer.draw(&Frame { basis: Some(Basis::H4), ..frame() }).expect("a picture");
@@ -158,17 +158,17 @@ fn what_maps_cannot_show_is_refused() {
     let Some(gpu) = gpu() else { return };
     let environment = Environment::constant([1.0; 3]);
     let mut prt = matte(Basis::Sh9, &fixed());
-    let mut renderer = Renderer::new(&gpu, &prt, &environment).expect("a sound scene");
+    let mut renderer = Renderer::without_window(&gpu, &prt, &environment).expect("a sound scene");
     let frames =
         [("`test`", Frame { rotation: rotation(), ..frame() }), ("ask for 9", Frame { functions: Some(4), ..frame() })];
     for (words, frame) in frames {
         let refused = renderer.draw(&frame).expect_err("a frame that maps cannot show");
         assert!(matches!(refused, Error::Invalid { .. }) && refused.to_string().contains(words), "{refused}");
     }
-    let mut plain = Renderer::new(&gpu, &sphere_on_plane(1, 8), &environment).expect("a sound scene");
+    let mut plain = Renderer::without_window(&gpu, &sphere_on_plane(1, 8), &environment).expect("a sound scene");
     let refused = plain.draw(&Frame { basis: Some(Basis::H4), ..frame() }).expect_err("no maps, no basis");
     assert!(refused.to_string().contains("no light maps"), "{refused}");
     prt.maps.as_mut().expect("maps").sheets[0].layers.count += 1;
-    let refused = Renderer::new(&gpu, &prt, &environment).expect_err("a broken map");
+    let refused = Renderer::without_window(&gpu, &prt, &environment).expect_err("a broken map");
     assert!(refused.to_string().contains("layers"), "{refused}");
 }

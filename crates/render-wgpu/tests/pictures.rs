@@ -44,8 +44,8 @@ fn frames() -> Vec<(&'static str, Frame)> {
 fn pictures_agree_with_the_cpu() {
     let Some(gpu) = gpu() else { return };
     let (environment, prt) = (environment(), sphere_on_plane(3, 24));
-    let twin = render_cpu::Renderer::new(&prt, &environment).expect("a sound scene");
-    let mut renderer = Renderer::new(&gpu, &prt, &environment).expect("a sound scene");
+    let twin = render_cpu::Renderer::without_window(&prt, &environment).expect("a sound scene");
+    let mut renderer = Renderer::without_window(&gpu, &prt, &environment).expect("a sound scene");
     for (name, frame) in frames() {
         let picture = renderer.draw(&frame).expect("a sound frame");
         let expected = twin.draw(&cpu_frame(&frame)).expect("a sound frame");
@@ -133,7 +133,7 @@ fn a_black_light_can_fail_the_furnace() {
 fn a_scene_builds_only_the_pipelines_that_it_calls_for() {
     let Some(gpu) = gpu() else { return };
     let light = Environment::constant([1.0; 3]);
-    let pipelines = |prt: &Prt| Renderer::new(&gpu, prt, &light).expect("a sound scene").pipelines();
+    let pipelines = |prt: &Prt| Renderer::without_window(&gpu, prt, &light).expect("a sound scene").pipelines();
     assert_eq!(pipelines(&furnace()), 1, "one kind of material");
     assert_eq!(pipelines(&sphere_on_plane(1, 8)), 6, "six kinds of material");
 }
@@ -142,7 +142,7 @@ fn a_scene_builds_only_the_pipelines_that_it_calls_for() {
 fn frames_of_one_scene_are_the_same_again() {
     let Some(gpu) = gpu() else { return };
     let (environment, prt) = (environment(), matte());
-    let mut renderer = Renderer::new(&gpu, &prt, &environment).expect("a sound scene");
+    let mut renderer = Renderer::without_window(&gpu, &prt, &environment).expect("a sound scene");
     let frame = Frame { bloom: 0.2, ..Frame::plain(camera(), 80, 50) };
     let first = renderer.draw(&frame).expect("a picture");
     let other = renderer.draw(&Frame { rotation: rotation(), width: 64, ..frame.clone() }).expect("a picture");
@@ -155,7 +155,7 @@ fn frames_of_one_scene_are_the_same_again() {
 #[test]
 fn frames_that_make_no_sense_are_refused() {
     let Some(gpu) = gpu() else { return };
-    let mut renderer = Renderer::new(&gpu, &furnace(), &Environment::constant([1.0; 3])).expect("a sound scene");
+    let mut renderer = Renderer::without_window(&gpu, &furnace(), &Environment::constant([1.0; 3])).expect("a sound scene");
     let plain = Frame::plain(camera(), 8, 8);
     let broken = [
         Frame { width: 0, ..plain.clone() },
@@ -188,7 +188,7 @@ fn scenes_that_contradict_themselves_are_refused() {
     for change in breaks {
         let mut prt = furnace();
         change(&mut prt);
-        let refused = Renderer::new(&gpu, &prt, &light).expect_err("a broken scene");
+        let refused = Renderer::without_window(&gpu, &prt, &light).expect_err("a broken scene");
         assert!(matches!(refused, Error::Invalid { .. }), "{refused}");
     }
 }

@@ -1,7 +1,7 @@
 //! Windows: factors per band that keep a reconstruction from ringing below zero.
 //!
 //! A window is a convolution with the kernel `sum_l s_l (2l+1)/(4 pi) P_l`. Where that kernel is nowhere negative, no
-//! non-negative light can be reconstructed negative. No window is the default; these are offers.
+//! non-negative light can be reconstructed negative. Renderers take the [`automatic`] window unless told otherwise.
 
 mod kernel;
 mod search;
@@ -19,6 +19,12 @@ pub fn laplacian(lambda: f64, bands: Bands) -> Vec<f64> {
         1.0 / (1.0 + lambda * eigenvalue * eigenvalue)
     };
     bands.degrees().map(factor).collect()
+}
+
+/// The light under its [`automatic`] window: the light itself where nothing rings.
+#[must_use]
+pub fn without_ringing(light: &Rgb) -> Rgb {
+    light.windowed(&automatic(light))
 }
 
 /// The window that makes this light's reconstruction non-negative at the least error of its irradiance.

@@ -107,7 +107,7 @@ impl Drawing {
 pub(crate) fn drawn(prt: &Prt, light: &Rgb, shot: &Shot, basis: impl Into<Option<Basis>>) -> Drawing {
     let basis = basis.into();
     let white = Environment::constant([1.0; 3]);
-    let mut renderer = Renderer::new(prt, &white).expect("a sound file");
+    let mut renderer = Renderer::without_window(prt, &white).expect("a sound file");
     renderer.set_light(light.clone());
     let draw = |sky| {
         let frame = Frame {

@@ -23,10 +23,7 @@ pub(super) const RAMP: [[u8; 3]; 6] =
 /// # Errors
 /// As the renderer has it.
 pub(super) fn baked(prt: &Prt, environment: &Environment) -> Result<Pixels, render_cpu::Error> {
-    let mut renderer = Renderer::new(prt, environment)?;
-    let light = renderer.light();
-    let window = sh_math::window::automatic(light);
-    renderer.set_light(light.windowed(&window));
+    let renderer = Renderer::new(prt, environment)?;
     let mut frame = frame(prt);
     let covered = coverage(prt)?;
     let image = renderer.draw(&frame)?;

@@ -50,7 +50,7 @@ pub fn rates(
 ) -> Result<Vec<Rate>, Error> {
     let mut all = Vec::new();
     for (stage, prt) in [(Stage::Vertex, &baked.at_vertices), (Stage::Fragment, &baked.at_texels)] {
-        let mut renderer = Renderer::new(gpu, prt, environment)?;
+        let mut renderer = Renderer::without_window(gpu, prt, environment)?;
         for camera in &prt.cameras {
             let frame = Frame::plain(camera.clone(), size[0], size[1]);
             for (way, turns) in [
