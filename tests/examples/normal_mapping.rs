@@ -1,7 +1,7 @@
 //! Prints how far light maps are from paths through bent normals, basis by basis: `normal_mapping -- SCENE PROBE BANDS SIZE PATHS [F.prt VIEW]`.
 //!
 //! Without a file, a scene that brings coordinates for one sheet is baked; a file must hold the windowed light of the probe in so many
-//! bands (`relume bake --storage texture --light fixed --window auto --basis sh9 --bands N`). SIZE is such as 320x240, PATHS per pixel,
+//! bands (`relume bake --storage texture --lighting fixed --basis sh9 --bands N`). SIZE is such as 320x240, PATHS per pixel,
 //! VIEW eye x,y,z, target x,y,z and degrees. The figures of `docs/normal-mapping.md`.
 
 #![expect(clippy::print_stdout, reason = "an example that prints a table")]

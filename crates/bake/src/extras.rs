@@ -56,7 +56,7 @@ impl Extras {
         }
         let value = format!("{} of {} coefficients", light.name, light.coefficients.len());
         let allowed = "give as many coefficients as the bake has, all finite";
-        Err(Error::Setting { setting: "--light fixed", value, allowed })
+        Err(Error::Setting { setting: "--lighting fixed", value, allowed })
     }
 
     /// Whether diffuse light will be drawn by the normals of normal maps.

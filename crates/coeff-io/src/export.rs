@@ -11,8 +11,8 @@ use std::path::Path;
 /// Writes `positions.npy` `[R, 3]`, `normals.npy` `[R, 3]`, `transfer.npy` `[R, n*n, C]` and, where C = 1,
 /// `albedo.npy` `[R, 3]` into `folder`, which is made if need be; all of little-endian f32.
 ///
-/// Where the file holds light maps or transfer textures, also `uv1.npy` `[R, 2]`, where they lie, and `triangles.npy` `[T, 3]` of little-endian u32: unwrapping
-/// splits vertices, so that the scene's own are not those of the maps.
+/// The mesh comes with them: `triangles.npy` `[T, 3]` of little-endian u32, `uv0.npy` and `uv1.npy` `[R, 2]` where there
+/// are texture coordinates, and `meshes.json` with the ranges of the meshes, their materials and the names of textures.
 ///
 /// Where C = 3 the albedo is multiplied into the transfer, so that `transfer * light` is outgoing radiance; where
 /// C = 1 outgoing radiance is `albedo * (transfer * light)`. Each file is written beside and renamed.
@@ -28,11 +28,7 @@ pub fn npy(prt: &Prt, folder: &Path) -> Result<(), Error> {
     let (coefficients, channels) = (u64::from(transfer.bands).pow(2), u64::from(transfer.channels));
     array(&folder.join("positions.npy"), &[rows, 3], prt.geometry.positions.as_flattened().iter().copied())?;
     array(&folder.join("normals.npy"), &[rows, 3], prt.geometry.normals.as_flattened().iter().copied())?;
-    if prt.maps.is_some() || prt.transfer_textures.is_some() {
-        array(&folder.join("uv1.npy"), &[rows, 2], prt.geometry.uv1.as_flattened().iter().copied())?;
-        let triangles = prt.geometry.triangles.as_flattened();
-        indices(&folder.join("triangles.npy"), &[prt.geometry.triangles.len() as u64, 3], triangles)?;
-    }
+    mesh(prt, folder)?;
     crate::export_gloss::gloss_npy(prt, folder)?;
     let path = folder.join("transfer.npy");
     let shape = [rows, coefficients, channels];
@@ -41,12 +37,44 @@ pub fn npy(prt: &Prt, folder: &Path) -> Result<(), Error> {
         return array(&folder.join("albedo.npy"), &[rows, 3], transfer.albedo.as_flattened().iter().copied());
     }
     // An albedo file of an earlier export would be taken for a factor that is still missing.
-    match std::fs::remove_file(folder.join("albedo.npy")) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e.into()),
-        _ => {}
-    }
+    remove(&folder.join("albedo.npy"))?;
     let receivers = transfer.values.chunks_exact((coefficients * channels) as usize).zip(&transfer.albedo);
     array(&path, &shape, receivers.flat_map(|(row, albedo)| row.iter().zip(albedo.iter().cycle()).map(|(t, a)| t * a)))
+}
+
+/// Writes triangles, texture coordinates, and which meshes and materials they belong to.
+fn mesh(prt: &Prt, folder: &Path) -> Result<(), Error> {
+    let geometry = &prt.geometry;
+    let triangles = geometry.triangles.as_flattened();
+    indices(&folder.join("triangles.npy"), &[geometry.triangles.len() as u64, 3], triangles)?;
+    for (name, uv) in [("uv0.npy", &geometry.uv0), ("uv1.npy", &geometry.uv1)] {
+        let path = folder.join(name);
+        match uv.len() as u64 {
+            // Those of an earlier export would be taken for this one's.
+            0 => remove(&path)?,
+            rows => array(&path, &[rows, 2], uv.as_flattened().iter().copied())?,
+        }
+    }
+    let texture = |texture: &crate::Texture| {
+        serde_json::json!({
+            "name": texture.name, "width": texture.width, "height": texture.height, "wrap": texture.wrap,
+        })
+    };
+    let value = serde_json::json!({
+        "scene": prt.scene,
+        "meshes": prt.meshes,
+        "materials": prt.materials,
+        "unlit": (0..prt.materials.len()).filter(|&index| prt.materials[index].unlit).collect::<Vec<_>>(),
+        "textures": prt.textures.iter().map(texture).collect::<Vec<_>>(),
+    });
+    Ok(replace(&folder.join("meshes.json"), |file| writeln!(file, "{value:#}"))?)
+}
+
+fn remove(path: &Path) -> Result<(), Error> {
+    match std::fs::remove_file(path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e.into()),
+        _ => Ok(()),
+    }
 }
 
 /// Writes light coefficients as one array `[n*n, 3]` of little-endian f32.

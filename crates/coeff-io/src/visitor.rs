@@ -17,7 +17,7 @@ pub enum VisitorError {
     #[error("the scene holds no irradiance volume to light a moving object with: bake it with --volume")]
     NoVolume,
     /// The light of the volume is fixed.
-    #[error("the scene's volume holds the light of `{0}` alone: bake it without --light fixed for moving objects")]
+    #[error("the scene's volume holds the light of `{0}` alone: bake it without --lighting fixed for moving objects")]
     Fixed(String),
     /// The two files differ in what cannot be brought together.
     #[error("{0}")]

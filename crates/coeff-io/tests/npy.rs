@@ -44,6 +44,27 @@ fn three_channels_have_the_albedo_in_the_transfer() {
     );
 }
 
+/// The mesh comes with every export, read here without the crate that wrote it; what is absent leaves no old file.
+#[test]
+fn every_export_has_its_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut prt = sample();
+    export::npy(&prt, folder.path()).unwrap();
+    assert_eq!(read_npy(&folder.path().join("uv0.npy")), (vec![7, 2], prt.geometry.uv0.as_flattened().to_vec()));
+    let triangles = std::fs::read(folder.path().join("triangles.npy")).unwrap();
+    let last = u32::from_le_bytes(triangles[triangles.len() - 4..].try_into().unwrap());
+    assert_eq!(last, prt.geometry.triangles.last().unwrap()[2]);
+    let text = std::fs::read_to_string(folder.path().join("meshes.json")).unwrap();
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(value["meshes"][1]["name"], "wall é");
+    assert_eq!(value["materials"][0]["metallic"].as_f64().map(|m| m as f32), Some(prt.materials[0].metallic));
+    assert_eq!(value["unlit"], serde_json::json!([1]));
+    prt.geometry.uv0.clear();
+    prt.materials.iter_mut().for_each(|m| m.base_color_texture = None);
+    export::npy(&prt, folder.path()).unwrap();
+    assert!(!folder.path().join("uv0.npy").exists());
+}
+
 /// The albedo of the sample is not 1, so that its product differs from the bare transfer.
 #[test]
 fn three_channels_have_the_albedo_in_the_transfer_can_fail() {

@@ -1,5 +1,6 @@
 //! `relume bake`: a scene becomes a `.prt` file.
 
+use crate::columns::percent;
 use crate::console::{Console, Progress};
 use crate::extras::ExtraOptions;
 use crate::light_facts::LightFacts;
@@ -10,7 +11,7 @@ use crate::{interrupt, output, settings, timed};
 use anyhow::{Context, Result};
 use coeff_io::{Prt, Quality, Settings};
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -21,40 +22,54 @@ Examples:
   relume bake scan.obj -o scan.prt --rays 256 --bounces 0 --memory 2G
   relume bake city.glb -o city.prt --time 10m
   relume bake house.glb -o house.prt --storage texture --texels 1024 --basis modified-h6
-  relume bake house.glb -o house.prt --storage texture --probe noon.hdr --light fixed --window auto --encoding bc6h
+  relume bake house.glb -o house.prt --storage texture --probe noon.hdr --lighting fixed --encoding bc6h
   relume bake house.glb -o house.prt --volume 0.5m --volume-levels 1
   relume bake lobby.glb -o lobby.prt --effects visibility,interreflection,color,specular,glossy,normal-maps --storage transfer --texels 1024
   relume bake lobby.glb -o lobby.prt --storage transfer --compress 0.02 --bounce-error 0.05
 
-Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest result so far stays.";
+Ctrl-C ends a bake; the file is written when all is done, never in part. With --time the file of the finest \
+result so far stays.";
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
     #[command(flatten)]
     scene: SceneOptions,
     /// The file to write.
-    #[arg(short, long, value_name = "F.prt")]
+    #[arg(short, long, value_name = "F.prt", value_parser = output::prt)]
     output: PathBuf,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Accuracy and effects")]
     bake: BakeOptions,
     /// The least error within a time: seconds, or 30s, 5m, 2h. Bakes from coarse to fine; the file is there after the first, coarse
     /// result and holds the finest one that was finished in time.
     #[arg(long, value_name = "T", conflicts_with_all = ["error", "rays"], value_parser = settings::seconds)]
     time: Option<f32>,
     /// The light that the result is meant for: with --bands auto, bands that it cannot show are left out.
-    #[arg(long, value_name = "PROBE", value_parser = source::probe)]
+    #[arg(long, value_name = "PROBE", value_parser = source::probe, help_heading = "Light probe")]
     probe: Option<ProbeSource>,
     #[command(flatten)]
     extras: ExtraOptions,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Light probe")]
     read: ReadOptions,
+}
+
+impl Options {
+    /// The light to look at the result with.
+    fn probe_name(&self) -> String {
+        self.probe.as_ref().map_or_else(|| "builtin:sky".into(), ProbeSource::name)
+    }
+
+    /// The files that are read.
+    fn inputs(&self) -> Vec<PathBuf> {
+        let probe = self.probe.as_ref().map(ProbeSource::files).unwrap_or_default();
+        [self.scene.files(), probe].concat()
+    }
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
     let settings =
         Settings { time: options.time, ..options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))? };
-    output::check(&options.output)?;
+    output::check(&options.output, &options.inputs())?;
     let mut scene = options.scene.load(console)?;
     let probe = options.probe.as_ref().map(|probe| (probe, &options.read));
     let extras = options.extras.of(&mut scene, options.bake.storage, &settings, probe, console)?;
@@ -107,8 +122,8 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         achieved.bounces
     ));
     let asked = match prt.settings.quality {
-        Quality::Error(asked) => format!("asked for {asked:.4}, "),
-        Quality::Rays(_) => String::new(),
+        Quality::Error(asked) if prt.settings.time.is_none() => format!("asked for {}, ", percent(asked)),
+        _ => String::new(),
     };
     console.notice(&format!("relative error: {asked}{}", error(prt.settings.quality, achieved.error)));
     if achieved.error[2] > 0.0 {
@@ -121,15 +136,14 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         console.notice(&gloss_text(gloss, prt.settings.quality));
         let [transfer, visibility, bounces] = gloss.compression;
         if let Some(asked) = options.extras.gloss.compress.filter(|_| transfer == 0.0 && visibility == 0.0) {
-            console
-                .notice(&format!("clusters to {:.2} % would take no less: rows are kept as they are", 100.0 * asked));
+            console.notice(&format!("clusters to {} would take no less: rows are kept as they are", percent(asked)));
         }
         let asked = options.extras.gloss.bounce_error;
         if bounces > 1.5 * asked {
             console.notice(&format!(
-                "clusters of bounces hold what is mirrored to {:.1} %, not to the {:.1} % asked for; --bounce-error 0 keeps bounces whole",
-                100.0 * bounces,
-                100.0 * asked
+                "clusters of bounces hold what is mirrored to {}, not to the {} asked for; --bounce-error 0 keeps bounces whole",
+                percent(bounces),
+                percent(asked)
             ));
         }
     }
@@ -146,7 +160,14 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         let probes = volume.validity.len();
         console.notice(&format!("volume: {probes} probes, {poor} of them inside of bodies"));
     }
-    console.notice(&format!("wrote {}", options.output.display()));
+    let file = options.output.display();
+    console.notice(&format!("wrote {file}"));
+    console.next(&format!("relume render {file} --probe {} -o {}", options.probe_name(), png(&options.output)));
+}
+
+/// The picture of a baked file.
+fn png(prt: &Path) -> String {
+    prt.with_extension("png").display().to_string()
 }
 
 /// What light maps took and reached, in words.
@@ -175,7 +196,7 @@ pub(crate) fn gloss_text(gloss: &coeff_io::GlossRecord, quality: Quality) -> Str
     text.push_str(&format!("; {held} instead of {exact}"));
     for (added, what) in gloss.compression.into_iter().zip(["transfer", "visibility", "what is mirrored"]) {
         if added > 0.0 {
-            text.push_str(&format!("; clusters err by {:.2} % of {what}", 100.0 * added));
+            text.push_str(&format!("; clusters err by {} of {what}", percent(added)));
         }
     }
     for (count, what) in [
@@ -202,6 +223,6 @@ pub(crate) fn worst_place(prt: &Prt) -> String {
 pub(crate) fn error(quality: Quality, [median, most, worst]: [f32; 3]) -> String {
     match quality {
         Quality::Rays(rays) if worst == 0.0 => format!("not estimated at a fixed number of {rays} rays"),
-        _ => format!("median {median:.4}, 95% below {most:.4}, worst {worst:.4}"),
+        _ => format!("median {}, 95 % of receivers below {}, worst {}", percent(median), percent(most), percent(worst)),
     }
 }

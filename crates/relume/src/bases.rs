@@ -18,14 +18,15 @@ Examples:
   relume bases -o bases/
   relume bases --signals 1000000 --seed 7 -o bases/
   relume bases --scene house.glb --probe kitchen.hdr -o house-bases/
-  relume bases --scene house.glb --probe kitchen.hdr --target 0.01 --texels 512 --error 0.05 -o house-bases/
-  relume bases --scene builtin:atrium --probe builtin:sky --budget 256K --bounces 1 -o atrium-bases/ --json
+  relume bases --scene house.glb --probe kitchen.hdr --target-error 1% --texels 512 --error 0.05 -o house-bases/
+  relume bases --scene builtin:atrium --probe builtin:sky --target-size 256K --bounces 1 -o atrium-bases/ --json
 
-Prints the table and writes bases.csv, bases.svg and bases.png. Errors depend on the seed alone; the nanoseconds are
-measured on this machine: let it rest meanwhile. One thread does all the work, whatever --threads says.
+Prints the table and writes bases.csv, bases.svg and bases.png. Errors depend on the seed alone; the nanoseconds \
+are measured on this machine: let it rest meanwhile. One thread does all the work, whatever --threads says.
 
-With --scene the scene is baked once, in 5 bands over normals, and the bases are compared on what arrives at its texels; one is
-recommended for --target or --budget. Writes bases-scene.csv, bases-scene.svg and bases-scene.png.";
+With --scene the scene is baked once, in 5 bands over normals, and the bases are compared on what arrives at its \
+texels; one is recommended for --target-error or --target-size. Writes bases-scene.csv, bases-scene.svg and \
+bases-scene.png.";
 
 /// The files that are written: the table, then the two forms of the plot.
 const FILES: [&str; 3] = ["bases.csv", "bases.svg", "bases.png"];
@@ -54,7 +55,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     if let Some(scene) = &options.scene {
         return bases_scene::run(scene, &options.on_scene, options.seed, folder, console);
     }
-    output::check_all(folder, &FILES)?;
+    output::check_all(folder, &FILES, &[])?;
     let study = study::bases::study(Settings { signals: options.signals, seed: options.seed });
     let (svg, picture) = (study.svg()?, study.picture()?);
     let [table, drawing, pixels] = FILES.map(|name| folder.join(name));
@@ -88,7 +89,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             std::fs::create_dir(folder.path().join(name)).unwrap();
             assert!(
-                output::check_all(folder.path(), &FILES).is_err_and(|error| error.to_string().contains(name)),
+                output::check_all(folder.path(), &FILES, &[]).is_err_and(|error| error.to_string().contains(name)),
                 "{name}"
             );
         }
@@ -99,6 +100,6 @@ mod tests {
     fn every_file_is_checked_before_can_fail() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("bases.txt")).unwrap();
-        assert!(output::check_all(folder.path(), &FILES).is_ok());
+        assert!(output::check_all(folder.path(), &FILES, &[]).is_ok());
     }
 }

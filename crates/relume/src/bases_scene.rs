@@ -31,12 +31,13 @@ pub(crate) struct OnScene {
     probe: Option<ProbeSource>,
     #[command(flatten)]
     read: ReadOptions,
-    /// The relative error as drawn to recommend for, the fewest bytes that keep it (0.02 where neither this nor --budget is given).
-    #[arg(long, value_name = "E", requires = "scene", conflicts_with = "budget", value_parser = target)]
-    target: Option<f64>,
+    /// The relative error as drawn to recommend for, the fewest bytes that keep it (0.02 where neither this nor --target-size is given).
+    #[arg(long, value_name = "E", requires = "scene", conflicts_with = "target_size", value_parser = target,
+          alias = "target")]
+    target_error: Option<f64>,
     /// The bytes of light maps to recommend for, the least error that fits; K, M and G stand for powers of 1024.
-    #[arg(long, value_name = "BYTES", requires = "scene", value_parser = cost::some_bytes)]
-    budget: Option<u64>,
+    #[arg(long, value_name = "BYTES", requires = "scene", value_parser = cost::some_bytes, alias = "budget")]
+    target_size: Option<u64>,
     /// Texels along a side of the sheets: about so many times as many in all, shared by area.
     #[arg(long, value_name = "N", default_value_t = 256, requires = "scene",
           value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
@@ -47,14 +48,14 @@ pub(crate) struct OnScene {
     /// Number of bands of the light.
     #[arg(long, value_name = "N", default_value_t = bake::settings::standard().bands, requires = "scene")]
     bands: u32,
-    /// What is done against ringing of the light, as for `bake --light fixed`.
-    #[arg(long, value_enum, default_value_t = Window::None, requires = "scene")]
+    /// What is done against ringing of the light, as for `bake --lighting fixed`.
+    #[arg(long, value_enum, default_value_t = Window::Auto, requires = "scene")]
     window: Window,
     /// Fixed number of rays per receiver and texel.
     #[arg(long, value_name = "N", conflicts_with = "error", requires = "scene")]
     rays: Option<u32>,
     /// Relative error of the bake that bases are judged by (0.01 where neither is given).
-    #[arg(long, value_name = "E", requires = "scene")]
+    #[arg(long, value_name = "E", requires = "scene", value_parser = settings::error, allow_negative_numbers = true)]
     error: Option<f32>,
     /// How often light may bounce: a number, or auto.
     #[arg(long, value_name = "N|auto", default_value = "auto", requires = "scene", value_parser = settings::bounces)]
@@ -75,7 +76,7 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     let Some(probe) = &options.probe else {
         return Err(Usage("--scene is judged under a light: say which with --probe".into()).into());
     };
-    output::check_all(folder, &FILES)?;
+    output::check_all(folder, &FILES, &[scene.files(), probe.files()].concat())?;
     let mut scene = scene.load(console)?;
     let environment = probe.load(&options.read, console)?;
     let choice = SheetChoice { texels: options.texels, unwrap: options.unwrap, padding: PADDING, only: Vec::new() };
@@ -83,8 +84,8 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     interrupt::watch()?;
     let found = bake(&scene, &settings, &sheets, &environment, options.window, console)?;
     let bake_options = match options.window {
-        Window::None => choice.options(),
-        Window::Auto => format!("--window auto {}", choice.options()),
+        Window::None => format!("--window none {}", choice.options()),
+        Window::Auto => choice.options(),
     };
     let request = Request {
         scene: &scene,
@@ -146,15 +147,15 @@ impl OnScene {
     }
 
     fn goal(&self) -> Goal {
-        self.budget.map_or(Goal::Error(self.target.unwrap_or(TARGET)), Goal::Bytes)
+        self.target_size.map_or(Goal::Error(self.target_error.unwrap_or(TARGET)), Goal::Bytes)
     }
 }
 
 /// Parses a relative error.
 fn target(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if value > 0.0 && value < 10.0 => Ok(value),
-        _ => Err("give a relative error above 0 and below 10, such as 0.02".into()),
+    match settings::share(text).map(f64::from) {
+        Some(value) if value > 0.0 && value < 10.0 => Ok(value),
+        _ => Err("give a relative error above 0 and below 10, such as 0.02 or 2%".into()),
     }
 }
 

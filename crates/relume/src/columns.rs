@@ -14,20 +14,43 @@ pub(crate) enum Side {
 #[derive(Debug)]
 pub(crate) struct Columns(pub(crate) &'static [(usize, Side)]);
 
+/// Characters of a line where there is no terminal.
+const WITHOUT_TERMINAL: usize = 120;
+/// Fewest characters of a column of words.
+const NARROWEST: usize = 9;
+
+/// Characters of a line of the terminal that stdout leads to.
+pub(crate) fn terminal_width() -> usize {
+    terminal_size::terminal_size().map_or(WITHOUT_TERMINAL, |(width, _)| usize::from(width.0))
+}
+
 impl Columns {
     /// Width of a whole line.
     pub(crate) fn width(&self) -> usize {
-        self.0.iter().map(|(width, _)| width + GAP).sum::<usize>() - GAP
+        self.fitted(terminal_width()).iter().map(|width| width + GAP).sum::<usize>() - GAP
+    }
+
+    /// Widths of the columns in a line of `most` characters: columns of words give way, those of numbers do not.
+    fn fitted(&self, most: usize) -> Vec<usize> {
+        let mut widths: Vec<usize> = self.0.iter().map(|(width, _)| *width).collect();
+        let line = |widths: &[usize]| widths.iter().map(|width| width + GAP).sum::<usize>() - GAP;
+        while line(&widths) > most {
+            let words = |index: &usize| self.0[*index].1 == Side::Left && widths[*index] > NARROWEST;
+            let Some(widest) = (0..widths.len()).filter(words).max_by_key(|&index| widths[index]) else { break };
+            widths[widest] -= 1;
+        }
+        widths
     }
 
     /// One row; it takes as many lines as its longest cell, without blanks at the ends of lines.
     pub(crate) fn row(&self, cells: &[&str]) -> String {
-        let wrapped: Vec<Vec<String>> = cells.iter().zip(self.0).map(|(cell, (width, _))| wrap(cell, *width)).collect();
+        let widths = self.fitted(terminal_width());
+        let wrapped: Vec<Vec<String>> = cells.iter().zip(&widths).map(|(cell, width)| wrap(cell, *width)).collect();
         let height = wrapped.iter().map(Vec::len).max().unwrap_or(0);
         let mut text = String::new();
         for line in 0..height {
             let mut out = String::new();
-            for (cell, &(width, side)) in wrapped.iter().zip(self.0) {
+            for ((cell, &width), &(_, side)) in wrapped.iter().zip(&widths).zip(self.0) {
                 let part = cell.get(line).map_or("", String::as_str);
                 match side {
                     Side::Left => out.push_str(&format!("{part:<width$}")),
@@ -87,6 +110,20 @@ fn scaled(mut value: f64, step: f64, units: &[&str]) -> String {
     }
 }
 
+/// A share in per cent, two digits of it.
+pub(crate) fn percent(share: f32) -> String {
+    let percent = 100.0 * f64::from(share);
+    let text = match percent.abs() {
+        0.0 => return "0 %".into(),
+        p if p < 0.01 => return "< 0.01 %".into(),
+        p if p < 0.995 => format!("{percent:.2}"),
+        p if p < 9.95 => format!("{percent:.1}"),
+        _ => format!("{percent:.0}"),
+    };
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    format!("{text} %")
+}
+
 /// A time in a few characters.
 pub(crate) fn seconds(s: f64) -> String {
     match s {
@@ -113,7 +150,17 @@ mod tests {
     }
 
     #[test]
+    fn columns_of_words_give_way() {
+        let columns = Columns(&[(20, Side::Left), (7, Side::Right), (30, Side::Left)]);
+        assert_eq!(columns.fitted(100), [20, 7, 30]);
+        assert_eq!(columns.fitted(51), [20, 7, 20]);
+        assert_eq!(columns.fitted(10), [NARROWEST, 7, NARROWEST], "what cannot fit stays readable");
+    }
+
+    #[test]
     fn numbers_are_short() {
+        let shares = [0.0, 0.00001, 0.005, 0.01, 0.0149, 0.0997, 0.5, 2.861].map(percent);
+        assert_eq!(shares, ["0 %", "< 0.01 %", "0.5 %", "1 %", "1.5 %", "10 %", "50 %", "286 %"]);
         assert_eq!([0, 999, 1234, 45_678_901].map(count), ["0", "999", "1.2 k", "46 M"]);
         assert_eq!([100, 1536, 3 << 30].map(bytes), ["100 B", "1.5 KiB", "3.0 GiB"]);
         assert_eq!(

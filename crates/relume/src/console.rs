@@ -38,6 +38,11 @@ impl Console {
         }
     }
 
+    /// Tells what is typed next.
+    pub(crate) fn next(&self, command: &str) {
+        self.notice(&format!("next: {command}"));
+    }
+
     /// Tells something that only `-v` asks for.
     pub(crate) fn detail(&self, text: &str) {
         if self.verbose {

@@ -22,10 +22,11 @@ Examples:
   relume cost house.glb --probe kitchen.hdr -o house-cost --budget 300
   relume cost house.glb --probe kitchen.hdr -o house-cost --target-error 0.005 --target-time 20 --target-size 8M
 
-Writes cost.html (one page that needs nothing else), cost.csv (every run), and the plots cost-seconds and cost-bytes as .svg
-and .png. Runs that do not fit into the budget are left out, and the page says which; the reference, which is two bakes, and
-one of 64 rays are made in any case. A part of the budget is kept for timing frames and drawing; on a large scene they may take
-longer. Ctrl-C ends the study; files are written when all is done.";
+Writes cost.html (one page that needs nothing else), cost.csv (every run), and the plots cost-seconds and \
+cost-bytes as .svg and .png. Runs that do not fit into the budget are left out, and the page says which; the \
+reference, which is two bakes, and one of 64 rays are made in any case. A part of the budget is kept for timing \
+frames and drawing; on a large scene they may take longer. Ctrl-C ends the study; files are written when all is \
+done.";
 
 /// The files of a report, in the order in which they are written.
 const FILES: [&str; 6] =
@@ -47,7 +48,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
     budget: f64,
     /// The error to recommend settings for, as for `bake --error`.
-    #[arg(long, value_name = "E", default_value_t = 0.01)]
+    #[arg(long, value_name = "E", default_value_t = 0.01, value_parser = settings::error, allow_negative_numbers = true)]
     target_error: f32,
     /// The seconds of baking to recommend settings for; a quarter of what the target error takes by default.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
@@ -84,7 +85,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         scene.cameras.insert(0, camera);
     }
     let environment = options.probe.load(console)?;
-    output::check_all(&options.output, &FILES)?;
+    output::check_all(&options.output, &FILES, &[options.scene.files(), options.probe.files()].concat())?;
     let (mapped, sheet_options) = (options.light_maps(&scene, console)?, options.sheet_choice().options());
     interrupt::watch()?;
     let targets = Targets { error: options.target_error, seconds: options.target_time, bytes: options.target_size };
@@ -258,12 +259,12 @@ mod tests {
     #[test]
     fn every_file_is_checked_before() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(output::check_all(&folder.path().join("new"), &FILES).is_ok());
+        assert!(output::check_all(&folder.path().join("new"), &FILES, &[]).is_ok());
         for name in FILES {
             let folder = tempfile::tempdir().unwrap();
             fs::create_dir(folder.path().join(name)).unwrap();
             assert!(
-                output::check_all(folder.path(), &FILES).is_err_and(|error| error.to_string().contains(name)),
+                output::check_all(folder.path(), &FILES, &[]).is_err_and(|error| error.to_string().contains(name)),
                 "{name}"
             );
         }
@@ -274,7 +275,7 @@ mod tests {
     fn every_file_is_checked_before_can_fail() {
         let folder = tempfile::tempdir().unwrap();
         fs::create_dir(folder.path().join("cost.txt")).unwrap();
-        assert!(output::check_all(folder.path(), &FILES).is_ok());
+        assert!(output::check_all(folder.path(), &FILES, &[]).is_ok());
     }
 
     /// Two bands are exact in their own bands and leave out a tenth of the light.

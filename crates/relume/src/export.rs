@@ -1,6 +1,7 @@
 //! `relume export`: the coefficients of a baked file for other programs.
 
 use crate::console::Console;
+use crate::output;
 use crate::source::{self, ProbeSource, ReadOptions};
 use crate::usage::Usage;
 use anyhow::{Context, Result, bail};
@@ -15,15 +16,16 @@ Examples:
   relume export atrium.prt --format dds --probe builtin:sky -o textures/
   relume export atrium.prt --format json -o text/
 
-npy writes positions.npy [R,3], normals.npy [R,3] and transfer.npy [R, n*n, C]. Where C is 3, transfer times light is
-outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times that. Where there are light maps
-or transfer textures, uv1.npy [R,2] says where vertices lie in them, and triangles.npy [T,3] which vertices belong together.
-Gloss and transfer textures follow as arrays of rows: gloss_*.npy, sheet_S_L_*.npy, bounce_book.npy and sheets.json (docs/format.md).
+npy writes positions.npy [R,3], normals.npy [R,3] and transfer.npy [R, n*n, C]. Where C is 3, transfer times \
+light is outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times \
+that. The mesh follows: triangles.npy [T,3], uv0.npy and uv1.npy [R,2] where there are texture coordinates, and \
+meshes.json with names, ranges and materials. Gloss and transfer textures follow as arrays of rows: gloss_*.npy, \
+sheet_S_L_*.npy, bounce_book.npy and sheets.json (docs/format.md).
 
-ktx2 and dds write light maps as 2-D arrays (sheet_0 ..., one layer per function and coefficient of the light, blocks and
-floating numbers as they are held, eight bits as halves) with maps.json, and a volume as nine 3-D textures of RGBA halves
-(volume_0 ... volume_8, spherical harmonics of irradiance / pi over world normals) with volume.json. A volume that answers
-to any light is lit by --probe.
+ktx2 and dds write light maps as 2-D arrays (sheet_0 ..., one layer per function and coefficient of the light, \
+blocks and floating numbers as they are held, eight bits as halves) with maps.json, and a volume as nine 3-D \
+textures of RGBA halves (volume_0 ... volume_8, spherical harmonics of irradiance / pi over world normals) with \
+volume.json. A volume that answers to any light is lit by --probe.
 
 json writes a volume with its cells and all numbers of its probes: volume.json.";
 
@@ -60,6 +62,8 @@ enum Format {
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let prt = source::prt(&options.file)?;
     let folder = &options.output;
+    let probe = options.probe.as_ref().map(ProbeSource::files).unwrap_or_default();
+    output::check_folder(folder, &[vec![options.file.clone()], probe].concat())?;
     let about = || format!("cannot write into {}", folder.display());
     let wrote = match options.format {
         Format::Npy => {

@@ -21,18 +21,18 @@ const MANY: u64 = 256 << 20;
 /// Light maps, a volume, and whether light is in them.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExtraOptions {
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Light maps and transfer textures")]
     maps: MapOptions,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Transfer textures and gloss")]
     pub(crate) gloss: GlossOptions,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Irradiance volume")]
     volume: VolumeOptions,
     /// Whether light maps, volumes and glossy bounces answer to any light, or hold that of --probe: fixed takes a small part of the bytes. A fixed volume is
     /// for export: moving objects (render --visitor) want one that can be relit.
-    #[arg(long, value_enum, default_value_t = LightMode::Relightable)]
-    light: LightMode,
+    #[arg(long, alias = "light", value_enum, default_value_t = LightMode::Relightable, help_heading = "Light probe")]
+    lighting: LightMode,
     /// What is done against ringing of a fixed light; auto where not given.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Light probe")]
     window: Option<Window>,
 }
 
@@ -73,13 +73,13 @@ impl ExtraOptions {
         if let (false, Some(option)) = (matches!(place, Place::Transfer(_)), self.gloss.typed_of_textures()) {
             return Err(Usage(format!("{option} is for transfer textures: add --storage transfer")).into());
         }
-        if self.window.is_some() && self.light != LightMode::Fixed {
-            return Err(Usage("--window is for a light that is baked in: add --light fixed".into()).into());
+        if self.window.is_some() && self.lighting != LightMode::Fixed {
+            return Err(Usage("--window is for a light that is baked in: add --lighting fixed".into()).into());
         }
         let light = self.fixed(place, settings.bands, probe, console)?;
         if light.is_some() && place == Place::Vertices && volume.is_none() && !glossy {
             return Err(Usage(
-                "--light fixed is for light maps, volumes and glossy bounces: add --storage texture, --volume or --effects with glossy"
+                "--lighting fixed is for light maps, volumes and glossy bounces: add --storage texture, --volume or --effects with glossy"
                     .into(),
             )
             .into());
@@ -105,7 +105,7 @@ impl ExtraOptions {
 
     /// Whether the plan calls for gloss, where that decides something.
     fn calls_for_gloss(&self, scene: &Scene, storage: Storage, settings: &Settings) -> Result<bool> {
-        if storage != Storage::Texture && self.light != LightMode::Fixed {
+        if storage != Storage::Texture && self.lighting != LightMode::Fixed {
             return Ok(false);
         }
         let plan = bake::plan(scene, settings).map_err(crate::bake::fault)?;
@@ -154,10 +154,10 @@ impl ExtraOptions {
         probe: Option<(&ProbeSource, &ReadOptions)>,
         console: &Console,
     ) -> Result<Option<FixedLight>> {
-        match (self.light, probe) {
+        match (self.lighting, probe) {
             (LightMode::Relightable, _) => Ok(None),
             (LightMode::Fixed, None) => {
-                Err(Usage("--light fixed bakes a light in: say which with --probe".into()).into())
+                Err(Usage("--lighting fixed bakes a light in: say which with --probe".into()).into())
             }
             (LightMode::Fixed, Some((probe, read))) => {
                 // The bounces of gloss take all bands that reach a product; light maps and volumes the first of them.

@@ -12,10 +12,11 @@ pub(crate) struct GlossOptions {
     #[arg(long)]
     pub(crate) no_levels: bool,
     /// Puts rows of transfer and visibility into clusters (clustered PCA), with this relative error at most; none keeps them as they are.
-    #[arg(long, value_name = "E", value_parser = share)]
+    #[arg(long, value_name = "E", value_parser = share, allow_negative_numbers = true)]
     pub(crate) compress: Option<f32>,
     /// Error allowed to the clusters of glossy bounces that can be relit, relative to all that is mirrored; 0 keeps them whole.
-    #[arg(long, value_name = "E", default_value_t = Compression::default().bounces, value_parser = share_or_none)]
+    #[arg(long, value_name = "E", default_value_t = Compression::default().bounces, value_parser = share_or_none,
+          allow_negative_numbers = true)]
     pub(crate) bounce_error: f32,
 }
 
@@ -42,12 +43,16 @@ impl GlossOptions {
 }
 
 fn share_or_none(text: &str) -> Result<f32, String> {
-    if text.parse() == Ok(0.0) { Ok(0.0) } else { share(text).map_err(|what| format!("{what}, or 0")) }
+    if crate::settings::share(text) == Some(0.0) {
+        Ok(0.0)
+    } else {
+        share(text).map_err(|what| format!("{what}, or 0"))
+    }
 }
 
 fn share(text: &str) -> Result<f32, String> {
-    match text.parse() {
-        Ok(value) if (1e-4..=1.0).contains(&value) => Ok(value),
-        _ => Err("give a relative error from 0.0001 to 1".into()),
+    match crate::settings::share(text) {
+        Some(value) if (1e-4..=1.0).contains(&value) => Ok(value),
+        _ => Err("give a relative error from 0.0001 to 1, such as 0.02 or 2%".into()),
     }
 }

@@ -4,6 +4,7 @@ use crate::columns::{Columns, Side, bytes, count};
 use crate::console::Console;
 use crate::inspect_gloss::{surfaces_json, surfaces_text};
 use crate::inspect_maps::{maps_json, maps_text, volume_json, volume_text};
+use crate::inspect_words::{bounces, changes, effects, quality, sampler};
 use anyhow::{Context, Result, bail};
 use coeff_io::{Chunk, EffectCost, Inspection, Kind};
 use serde_json::json;
@@ -40,6 +41,7 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let path = &options.file;
     let about = || format!("{}", path.display());
+    crate::source::check_baked(path)?;
     let seen = coeff_io::inspect(path).with_context(about)?;
     let sums = coeff_io::check(path, &seen.chunks).with_context(about)?;
     let text = if options.json { as_json(&seen, &sums) } else { as_text(&seen, &sums)? };
@@ -54,6 +56,8 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     if prt.achieved.error[2] > 0.0 && !options.json {
         console.print(&format!("worst error {}\n", crate::bake::worst_place(&prt)))?;
     }
+    let picture = path.with_extension("png");
+    console.next(&format!("relume render {} --probe builtin:sky -o {}", path.display(), picture.display()));
     Ok(())
 }
 
@@ -74,6 +78,7 @@ fn as_json(seen: &Inspection, sums: &[u32]) -> String {
         "volume": seen.header.volume.as_ref().map(|volume| volume_json(volume, seen)),
         "gloss": surfaces_json(seen),
         "header": seen.header,
+        "supplement": seen.supplement,
     });
     format!("{value:#}")
 }
@@ -121,7 +126,7 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
     let header = &seen.header;
     let (settings, achieved) = (&header.settings, &header.achieved);
     let mut row = |name: &str, value: String| writeln!(text, "{name:<16} {value}");
-    row("format", format!("version {}, {} bytes, written by {}", seen.version, seen.file_length, header.generator))?;
+    row("format", format!("version {}, {}, written by {}", seen.version, bytes(seen.file_length), header.generator))?;
     row("convention", header.convention.clone())?;
     row("scene", header.scene.clone())?;
     let (meshes, materials, textures) = (header.meshes.len(), header.materials.len(), header.textures.len());
@@ -141,27 +146,24 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
     if let Some(text) = surfaces_text(seen) {
         row("gloss", text)?;
     }
+    row("asked for", format!("{}, {}, {}", quality(settings), bounces(settings.bounces), effects(&settings.effects)))?;
     row(
-        "asked for",
-        format!(
-            "{:?}{}, bounces {:?}, effects {:?}",
-            settings.quality,
-            settings.time.map_or(String::new(), |seconds| format!(" within {seconds} s")),
-            settings.bounces,
-            settings.effects
-        ),
+        "sampler",
+        format!("{}, seed {}, {} of memory", sampler(settings.sampler), settings.seed, bytes(settings.memory)),
     )?;
-    row("sampler", format!("{:?}, seed {}, memory {} bytes", settings.sampler, settings.seed, settings.memory))?;
     let worst = achieved.worst_receiver;
     row("error", format!("{}; receiver {worst} is worst", crate::bake::error(settings.quality, achieved.error)))?;
-    row("rays", format!("{} visibility, {} bounce", achieved.visibility_rays, achieved.bounce_rays))?;
+    row(
+        "rays",
+        format!("{} for visibility, {} for bounces", count(achieved.visibility_rays), count(achieved.bounce_rays)),
+    )?;
     if let Some(maps) = &achieved.maps {
         row("maps", crate::bake::light_maps(maps, settings.quality))?;
     }
     if let Some(gloss) = &achieved.gloss {
         row("textures", crate::bake::gloss_text(gloss, settings.quality))?;
     }
-    row("bounces", format!("{}, which changed {:?}", achieved.bounces, achieved.bounce_changes))?;
+    row("bounces", changes(achieved.bounces, &achieved.bounce_changes))?;
     let repairs = achieved.repairs;
     let (inside, normals) = (repairs.inside, repairs.bad_normals);
     row("repairs", format!("{inside} inside geometry, {normals} bad normals, {} not repaired", repairs.unrepaired))?;

@@ -1,7 +1,9 @@
 //! `relume light`: the spherical harmonics coefficients of a light probe.
 
 use crate::console::Console;
+use crate::output;
 use crate::source::{self, ProbeSource, ReadOptions};
+use crate::usage::Usage;
 use anyhow::{Context, Result};
 use sh_math::Bands;
 use std::path::PathBuf;
@@ -21,9 +23,9 @@ pub(crate) struct Options {
     /// Number of bands.
     #[arg(long, value_name = "N", default_value = "5", value_parser = source::bands)]
     bands: Bands,
-    /// What to write.
-    #[arg(long, value_enum, default_value_t = Format::Npy)]
-    format: Format,
+    /// What to write; told by the ending of the file where not given.
+    #[arg(long, value_enum)]
+    format: Option<Format>,
     /// The file to write.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -31,7 +33,7 @@ pub(crate) struct Options {
     read: ReadOptions,
 }
 
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
     /// An array of NumPy.
     Npy,
@@ -39,15 +41,38 @@ enum Format {
     Json,
 }
 
+impl Options {
+    /// What is written: the ending of the file must agree with what was asked for.
+    fn format(&self) -> Result<Format> {
+        let ending = self.output.extension().map(|ending| ending.to_ascii_lowercase());
+        let named = match ending.as_ref().and_then(|ending| ending.to_str()) {
+            Some("npy") => Format::Npy,
+            Some("json") => Format::Json,
+            _ => return Err(Usage("give a file that ends in .npy or .json with --output".into()).into()),
+        };
+        match self.format {
+            Some(asked) if asked != named => Err(Usage(format!(
+                "{} is not the name of what --format asks for: give another ending, or leave --format out",
+                self.output.display()
+            ))
+            .into()),
+            _ => Ok(named),
+        }
+    }
+}
+
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
+    let format = options.format()?;
+    output::check(&options.output, &options.probe.files())?;
     let environment = options.probe.load(&options.read, console)?;
     let light = sh_math::project(options.bands, environment.samples());
     let path = &options.output;
-    let written = match options.format {
+    let written = match format {
         Format::Npy => coeff_io::export::light_npy(&light, path),
         Format::Json => coeff_io::export::light_json(&light, path),
     };
     written.with_context(|| format!("cannot write {}", path.display()))?;
     console.notice(&format!("wrote {} coefficients to {}", options.bands.coefficients(), path.display()));
+    console.next("relume export F.prt -o DIR, whose transfer times these coefficients is outgoing radiance");
     Ok(())
 }

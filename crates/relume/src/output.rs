@@ -72,9 +72,12 @@ pub(crate) fn check_all(folder: &Path, names: &[&str], inputs: &[PathBuf]) -> Re
     names.iter().try_for_each(|name| check(&folder.join(name), inputs))
 }
 
-/// Makes a folder, and fails where a file in it has the ending, but not the bytes, of what is written there.
+/// Fails where a file in a folder has the ending, but not the bytes, of what is written there.
 pub(crate) fn check_folder(folder: &Path, inputs: &[PathBuf]) -> Result<()> {
-    make_folder(folder)?;
+    if !folder.exists() {
+        return Ok(());
+    }
+    check_is_folder(folder)?;
     let entries = fs::read_dir(folder).with_context(|| format!("cannot read the folder {}", folder.display()))?;
     for path in entries.flatten().map(|entry| entry.path()) {
         if path.is_file() && Format::of_name(&path).is_some() && !inputs.iter().any(|input| same(input, &path)) {
@@ -86,10 +89,15 @@ pub(crate) fn check_folder(folder: &Path, inputs: &[PathBuf]) -> Result<()> {
         .with_context(|| format!("cannot write into {}: choose another folder", folder.display()))
 }
 
-fn make_folder(folder: &Path) -> Result<()> {
+fn check_is_folder(folder: &Path) -> Result<()> {
     if folder.is_file() {
         return Err(Usage(format!("{} is a file: name a folder to write into", folder.display())).into());
     }
+    Ok(())
+}
+
+fn make_folder(folder: &Path) -> Result<()> {
+    check_is_folder(folder)?;
     fs::create_dir_all(folder)
         .with_context(|| format!("cannot make the folder {}: choose another, or make room for it", folder.display()))
 }
@@ -146,7 +154,9 @@ mod tests {
     #[test]
     fn formats_are_told_by_their_bytes() {
         let head = |path: &str, bytes: &[u8]| Format::of_name(Path::new(path)).unwrap().fits(bytes);
-        assert!(head("a.prt", &coeff_io::MAGIC) && head("a.PNG", b"\x89PNG\r\n\x1a\n...") && head("a.json", b" {\"a\":1}"));
+        assert!(
+            head("a.prt", &coeff_io::MAGIC) && head("a.PNG", b"\x89PNG\r\n\x1a\n...") && head("a.json", b" {\"a\":1}")
+        );
         assert!(head("a.csv", b"a,b\n") && head("a.npy", b""));
         assert!(!head("a.prt", b"glTF") && !head("a.npy", b"#?RADIANCE") && !head("a.exr", b"\x89PNG\r\n\x1a\n"));
         assert!(!head("a.json", b"{\"asset\":{\"version\":\"2.0\"}}") && !head("a.csv", b"\x93NUMPY\x01\0"));

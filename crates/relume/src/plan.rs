@@ -18,8 +18,8 @@ Examples:
   relume plan house.glb --probe kitchen.hdr --bands auto --json
   relume plan builtin:atrium --effects all --meshes
 
-Times are predicted from a few hundred receivers that are baked for trial on this machine; the texels of light maps (--storage texture)
-come on top.";
+Times are predicted from a few hundred receivers that are baked for trial on this machine; the texels of light \
+maps (--storage texture) come on top.";
 
 const COLUMNS: Columns = Columns(&[
     (15, Side::Left),
@@ -41,15 +41,15 @@ pub(crate) struct Options {
     /// A light: tells how many bands it can show, and how much of it they hold.
     #[arg(long, value_name = "PROBE", value_parser = source::probe)]
     probe: Option<ProbeSource>,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Light probe")]
     read: ReadOptions,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Accuracy and effects")]
     bake: BakeOptions,
     /// List what each mesh calls for.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     meshes: bool,
     /// Print JSON.
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 
@@ -79,7 +79,9 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         }
         text
     };
-    console.print(&text)
+    console.print(&text)?;
+    console.next(&options.scene.bake_command());
+    Ok(())
 }
 
 /// Light maps as far as a plan looks at them: whether normal maps ask for directions.

@@ -19,16 +19,16 @@ Examples:
   relume reference builtin:cornell-box --probe builtin:sky -o truth.exr
   relume reference house.glb --probe kitchen.hdr --spp 1024 --size 480x270 -o truth.exr
   relume reference house.glb --probe kitchen.hdr --light bands:5 -o what-a-bake-should-give.exr
-  relume reference house.glb --probe sun.hdr --light bands:5 --window auto -o what-render-window-auto-should-give.exr
+  relume reference house.glb --probe sun.hdr --light bands:5 --window none -o what-render-window-none-should-give.exr
   relume reference builtin:cornell-box --probe builtin:sky --specular off -o diffuse-alone.exr
   relume reference lobby.glb --probe kitchen.hdr --specular phong --exponent 20 -o what-render-lobe-phong-should-give.exr
   relume reference lobby.glb --probe kitchen.hdr --specular microfacet -o true-ggx.exr
 
-`--light bands:N` lights the scene with what N bands hold of the probe: a bake of N bands should give the same picture,
-but for noise and for what lies between vertices. Surfaces that shine mirror as `render` draws them, with a lobe about the
-mirror direction that no bands cut off; normal maps bend the mirror's normal always, that of diffuse light with
-`--normal-maps`. What is not metal nor smoother than 0.6 anywhere does not shine: a matte scene has the same picture
-whatever `--specular` says.";
+`--light bands:N` lights the scene with what N bands hold of the probe: a bake of N bands should give the same \
+picture, but for noise and for what lies between vertices. Surfaces that shine mirror as `render` draws them, \
+with a lobe about the mirror direction that no bands cut off; normal maps bend the mirror's normal always, that \
+of diffuse light with `--normal-maps`. What is not metal nor smoother than 0.6 anywhere does not shine: a matte \
+scene has the same picture whatever `--specular` says.";
 
 /// Columns of the picture that stands for band-limited light: 16 bands change little over one of its pixels.
 const LIGHT_WIDTH: usize = 512;
@@ -40,42 +40,42 @@ pub(crate) struct Options {
     #[command(flatten)]
     probe: ProbeOptions,
     /// The picture to write: .exr for linear radiance, .png for the display.
-    #[arg(short, long, value_name = "FILE", value_parser = picture::target)]
+    #[arg(short, long, value_name = "FILE", value_parser = picture::target, help_heading = "Image")]
     output: Target,
     /// Paths per pixel.
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Image")]
     spp: u32,
     /// The light: full, or what N bands hold of it.
-    #[arg(long, value_name = "full|bands:N", default_value = "full", value_parser = light)]
+    #[arg(long, value_name = "full|bands:N", default_value = "full", value_parser = light, help_heading = "Light probe")]
     light: Truth,
     /// What is done against ringing of the light of few bands, as `render` does it; auto where not given.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Light probe")]
     window: Option<Window>,
     /// What surfaces that shine mirror, besides their diffuse part.
-    #[arg(long, value_enum, default_value_t = Specular::Ggx)]
+    #[arg(long, value_enum, default_value_t = Specular::Ggx, help_heading = "Surfaces")]
     specular: Specular,
     /// One perceptual roughness for all that shines, 0 to 1.
-    #[arg(long, value_name = "R", conflicts_with = "exponent", value_parser = roughness)]
+    #[arg(long, value_name = "R", conflicts_with = "exponent", value_parser = roughness, help_heading = "Surfaces")]
     roughness: Option<f32>,
     /// The same as an exponent of Phong, 0 to 100000.
-    #[arg(long, value_name = "S", value_parser = exponent)]
+    #[arg(long, value_name = "S", value_parser = exponent, help_heading = "Surfaces")]
     exponent: Option<f32>,
     /// Lets normal maps bend the normals that diffuse light is taken by, as light maps do.
-    #[arg(long)]
+    #[arg(long, help_heading = "Surfaces")]
     normal_maps: bool,
     /// How often light may bounce: a number, or auto for until paths end by themselves.
-    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = settings::bounces)]
+    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = settings::bounces, help_heading = "Image")]
     bounces: Bounces,
     /// Columns and rows.
-    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size)]
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size, help_heading = "Image")]
     size: Size,
     /// The view: the name of a camera, or eye x,y,z, target x,y,z and vertical angle of view in degrees.
-    #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true)]
+    #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true, help_heading = "Image")]
     camera: Option<Lens>,
     /// Seed of everything random.
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, help_heading = "Image")]
     seed: u64,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Exposure and tone")]
     display: DisplayOptions,
 }
 
@@ -136,7 +136,7 @@ fn light(text: &str) -> Result<Truth, String> {
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let gloss = options.gloss()?;
-    output::check(&options.output.path)?;
+    output::check(&options.output.path, &[options.scene.files(), options.probe.files()].concat())?;
     let scene = options.scene.load(console)?;
     let camera = lens::of_scene(options.camera.as_ref(), &scene)?;
     let environment = options.probe.load(console)?;
@@ -172,6 +172,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         options.output.path.display(),
         100.0 * noise
     ));
+    console.next(&options.scene.bake_command());
     Ok(())
 }
 

@@ -28,10 +28,10 @@ Examples:
   relume render hall.prt --probe builtin:sky --basis modified-h6 --functions 1 --albedo off -o hall-flat.png
   relume render lobby.prt --probe kitchen.hdr --lobe phong --exponent 20 --way tpfl -o lobby.png
 
-The fourth writes turn-0000.png to turn-0035.png, the light turned by 10 degrees each, and tells the time per frame. The fifth moves an object through the
-scene's irradiance volume. The next two draw
-light maps: in another basis than they were baked in, and one function of six as an ordinary light map, without the surfaces' colours. The last
-mirrors with one Phong lobe.";
+The fourth writes turn-0000.png to turn-0035.png, the light turned by 10 degrees each, and tells the time per \
+frame. The fifth moves an object through the scene's irradiance volume. The next two draw light maps: in another \
+basis than they were baked in, and one function of six as an ordinary light map, without the surfaces' colours. \
+The last mirrors with one Phong lobe.";
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -41,42 +41,42 @@ pub(crate) struct Options {
     #[command(flatten)]
     probe: ProbeOptions,
     /// The picture to write: .png for the display, .exr for linear radiance.
-    #[arg(short, long, value_name = "FILE", value_parser = picture::target)]
+    #[arg(short, long, value_name = "FILE", value_parser = picture::target, help_heading = "Image")]
     output: Target,
     /// Columns and rows.
-    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size)]
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size, help_heading = "Image")]
     size: Size,
     /// Turns the light, in degrees: yaw about the upward axis, then pitch about x, then roll about z.
-    #[arg(long, value_name = "YAW,PITCH,ROLL", default_value = "0,0,0", value_parser = rotation, allow_hyphen_values = true)]
+    #[arg(long, value_name = "YAW,PITCH,ROLL", default_value = "0,0,0", value_parser = rotation, allow_hyphen_values = true, help_heading = "Light probe")]
     rotate: Quat,
     /// The view: the name of a camera, or eye x,y,z, target x,y,z and vertical angle of view in degrees.
-    #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true)]
+    #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true, help_heading = "Image")]
     camera: Option<Lens>,
     /// Who draws; auto takes the CPU where there is no GPU.
-    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    #[arg(long, value_enum, default_value_t = Backend::Auto, help_heading = "Image")]
     backend: Backend,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Exposure and tone")]
     display: DisplayOptions,
     /// Share of glow around bright places, 0 to 1.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, help_heading = "Image")]
     bloom: f32,
     /// Samples along each side of a pixel, 1 to 8.
-    #[arg(long, value_name = "N", default_value_t = 2)]
+    #[arg(long, value_name = "N", default_value_t = 2, help_heading = "Image")]
     supersample: u32,
     /// What is done against ringing under a strong small light; see docs/shading.md.
-    #[arg(long, value_enum, default_value_t = Window::Auto)]
+    #[arg(long, value_enum, default_value_t = Window::Auto, help_heading = "Light probe")]
     window: Window,
     /// What is drawn behind the scene.
-    #[arg(long, value_enum, default_value_t = Background::Sky)]
+    #[arg(long, value_enum, default_value_t = Background::Sky, help_heading = "Image")]
     background: Background,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Light maps")]
     look: LookOptions,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Gloss")]
     gloss: GlossOptions,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Dynamic object")]
     visitor: VisitorOptions,
     /// Draws N pictures, the light turned by 360/N degrees from one to the next; with --to, a visitor on its way instead.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = "Image")]
     frames: Option<NonZeroU32>,
 }
 
@@ -88,8 +88,35 @@ enum Background {
     Black,
 }
 
+impl Options {
+    /// The same light from another side: nothing has to be baked for it.
+    fn tell_next(&self, console: &Console) {
+        let path = &self.output.path;
+        let name = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().display().to_string();
+        let turned = format!("{}-turned.{}", name(path.file_stem()), name(path.extension()));
+        let (file, probe) = (self.file.display(), self.probe.name());
+        console.next(&format!(
+            "relume render {file} --probe {probe} --rotate 90,0,0 -o {}",
+            path.with_file_name(turned).display()
+        ));
+    }
+
+    /// Fails where a picture would replace what is read, or a file that is no picture.
+    fn check_outputs(&self) -> Result<()> {
+        let inputs = [vec![self.file.clone()], self.probe.files()].concat();
+        match self.frames {
+            None => output::check(&self.output.path, &inputs),
+            Some(count) => (0..count.get()).try_for_each(|number| {
+                let path = self.output.numbered(number).path;
+                // The first tells for all whether the folder can be written.
+                if number == 0 || path.exists() { output::check(&path, &inputs) } else { Ok(()) }
+            }),
+        }
+    }
+}
+
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
-    output::check(&options.output.path)?;
+    options.check_outputs()?;
     let scene = source::prt(&options.file)?;
     let visitor = options.visitor.load()?;
     if let Some(visitor) = &visitor {
@@ -143,6 +170,7 @@ fn draw_one(options: &Options, frame: &Frame, drawer: &mut Drawer<'_>, console: 
     console.detail(&format!("drew in {:.1} ms", milliseconds(began.elapsed())));
     options.output.write(options.size, &image.linear, &image.display)?;
     console.notice(&format!("wrote {}", options.output.path.display()));
+    options.tell_next(console);
     Ok(())
 }
 

@@ -10,17 +10,18 @@ use coeff_io::{BandChoice, Bounces, Effect, Effects, Quality, Refine, Sampler, S
 pub(crate) struct BakeOptions {
     /// Number of bands: n bands are n*n coefficients per receiver. With auto those whose absence would show, under the light of
     /// --probe where one is given: 5 at most, or auto:MAX.
-    #[arg(long, value_name = "N|auto|auto:MAX", default_value_t = BandsOption::standard(), value_parser = bands)]
+    #[arg(long, value_name = "N|auto|auto:MAX", default_value_t = BandsOption::standard(), value_parser = bands,
+          allow_negative_numbers = true)]
     bands: BandsOption,
     /// Fixed number of rays per receiver.
-    #[arg(long, value_name = "N", conflicts_with = "error")]
+    #[arg(long, value_name = "N", conflicts_with = "error", allow_negative_numbers = true)]
     rays: Option<u32>,
-    /// Relative error of each receiver's transfer to reach (0.01 where neither is given); a receiver takes 16,384 directions at
+    /// Relative error of each receiver's transfer to reach, such as 0.01 or 1%, which is the default; a receiver takes 16,384 directions at
     /// most, and the file says what was reached.
-    #[arg(long, value_name = "E")]
+    #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true)]
     error: Option<f32>,
     /// How often light may bounce: a number, or auto for until it changes nothing.
-    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = bounces)]
+    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = bounces, allow_negative_numbers = true)]
     bounces: Bounces,
     /// Splits large triangles, whose vertices alone could not hold shadows: auto (as evenly as the scene's own triangles
     /// allow, and finer where a quick look finds that shadows bend between vertices), off, or the longest edge in metres.
@@ -136,6 +137,20 @@ fn bands(text: &str) -> Result<BandsOption, String> {
     }
 }
 
+/// Parses a share: `0.01` or `1%`.
+pub(crate) fn share(text: &str) -> Option<f32> {
+    let value = match text.trim().strip_suffix('%') {
+        Some(percent) => percent.trim_end().parse::<f64>().ok()? / 100.0,
+        None => text.trim().parse::<f64>().ok()?,
+    };
+    value.is_finite().then_some(value as f32)
+}
+
+/// Parses a relative error above 0.
+pub(crate) fn error(text: &str) -> Result<f32, String> {
+    share(text).filter(|&value| value > 0.0).ok_or_else(|| "give a relative error above 0, such as 0.01 or 1%".into())
+}
+
 /// Parses a number of bounces; the reference takes the same words.
 pub(crate) fn bounces(text: &str) -> Result<Bounces, String> {
     match text {
@@ -220,6 +235,8 @@ mod tests {
 
     #[test]
     fn words_become_settings() {
+        assert_eq!(["0.01", "1%", "1 %", "x%", "nan"].map(share), [Some(0.01), Some(0.01), Some(0.01), None, None]);
+        assert!(error("5%") == Ok(0.05) && error("0").is_err() && error("-1").is_err());
         assert_eq!(bytes("4G"), Ok(4 << 30));
         assert_eq!(bytes("100"), Ok(100));
         assert!(bytes("G").is_err() && bytes("-1").is_err() && bytes("99999999999G").is_err());

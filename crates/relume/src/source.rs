@@ -1,6 +1,7 @@
 //! Where scenes, light probes and baked files come from: a path or `builtin:NAME`.
 
 use crate::console::Console;
+use crate::mistake::{self, Kind};
 use crate::usage::Usage;
 use anyhow::{Context, Result};
 use coeff_io::Prt;
@@ -24,10 +25,61 @@ fn parse(text: &str) -> Result<Source, std::convert::Infallible> {
     })
 }
 
-/// Wrong usage: a name that is not built in.
+impl Source {
+    /// As the user typed it.
+    fn name(&self) -> String {
+        match self {
+            Self::Path(path) => path.display().to_string(),
+            Self::Builtin(name) => format!("builtin:{name}"),
+        }
+    }
+
+    /// The file, or the files of a folder, that this reads.
+    fn files(&self) -> Vec<PathBuf> {
+        match self {
+            Self::Builtin(_) => Vec::new(),
+            Self::Path(path) if path.is_dir() => {
+                std::fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path()).collect()
+            }
+            Self::Path(path) => vec![path.clone()],
+        }
+    }
+}
+
+/// Wrong usage: a name that is not built in, or numbers behind it that make no sense.
 fn unknown(name: &str, known: &[&[(&str, &str)]]) -> Usage {
-    let names: Vec<&str> = known.iter().copied().flatten().map(|(name, _)| *name).collect();
-    Usage(format!("there is no 'builtin:{name}'; there are {}", names.join(", ")))
+    let forms: Vec<&str> = known.iter().copied().flatten().map(|(name, _)| *name).collect();
+    let (kind, numbers) = name.split_once(':').map_or((name, None), |(kind, numbers)| (kind, Some(numbers)));
+    let form = forms.iter().find(|form| bare_name(form) == kind);
+    match (form, numbers) {
+        (Some(form), Some(numbers)) if form.contains('[') => {
+            Usage(format!("'{numbers}' does not fit builtin:{kind}: it is typed builtin:{form}"))
+        }
+        (Some(_), Some(_)) => Usage(format!("builtin:{kind} takes no numbers: give builtin:{kind}")),
+        _ => {
+            let bare: Vec<&str> = forms.iter().map(|form| bare_name(form)).collect();
+            let meant =
+                mistake::nearest(kind, &bare).map_or(String::new(), |name| format!("; did you mean builtin:{name}?"));
+            let there_are = if meant.is_empty() { format!("; there are {}", forms.join(", ")) } else { meant };
+            Usage(format!("there is no 'builtin:{name}'{there_are}"))
+        }
+    }
+}
+
+/// A built-in name without the numbers that may follow it.
+fn bare_name(form: &str) -> &str {
+    form.split('[').next().unwrap_or(form)
+}
+
+/// Fails where it shows beforehand that `path` is no file of the wanted kind.
+fn check_kind(path: &Path, wanted: Kind, known: &[&[(&str, &str)]]) -> Result<()> {
+    let names: Vec<&str> = known.iter().copied().flatten().map(|(form, _)| bare_name(form)).collect();
+    match mistake::about(path, wanted, &names) {
+        // A missing file is a failure, as it is to every other reader of files.
+        Some(text) if !path.exists() => anyhow::bail!(text),
+        Some(text) => Err(Usage(text).into()),
+        None => Ok(()),
+    }
 }
 
 /// The scene that a command works on.
@@ -39,9 +91,20 @@ pub(crate) struct SceneOptions {
 }
 
 impl SceneOptions {
+    /// What is typed to bake this scene.
+    pub(crate) fn bake_command(&self) -> String {
+        let name = self.scene.name();
+        format!("relume bake {name} -o {}.prt", self.scene.stem())
+    }
+
     /// Loads the scene and tells what was mended.
     pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
         self.scene.load(console)
+    }
+
+    /// The files that this reads.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        self.scene.files()
     }
 }
 
@@ -55,10 +118,32 @@ pub(crate) fn scene(text: &str) -> Result<SceneSource, std::convert::Infallible>
 }
 
 impl SceneSource {
+    /// The scene as the user named it.
+    pub(crate) fn name(&self) -> String {
+        self.0.name()
+    }
+
+    /// A name for what is made of it.
+    pub(crate) fn stem(&self) -> String {
+        let name = Path::new(match &self.0 {
+            Source::Path(path) => path.as_os_str(),
+            Source::Builtin(name) => name.as_ref(),
+        });
+        name.file_stem().unwrap_or_default().display().to_string()
+    }
+
+    /// The files that this reads.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        self.0.files()
+    }
+
     /// Loads the scene and tells what was mended.
     pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
         let scene = match &self.0 {
-            Source::Path(path) => scene::load(path)?,
+            Source::Path(path) => {
+                check_kind(path, Kind::Scene, &[scene::BUILTINS, scene::PAPER_SCENES])?;
+                scene::load(path)?
+            }
             Source::Builtin(name) => {
                 scene::builtin(name).ok_or_else(|| unknown(name, &[scene::BUILTINS, scene::PAPER_SCENES]))?
             }
@@ -93,9 +178,9 @@ pub(crate) struct ReadOptions {
 #[derive(Debug, clap::Args)]
 pub(crate) struct ProbeOptions {
     /// The light: .hdr, .exr, a folder of six faces, or builtin:NAME.
-    #[arg(long, value_name = "PROBE", value_parser = probe)]
+    #[arg(long, value_name = "PROBE", value_parser = probe, help_heading = "Light probe")]
     probe: ProbeSource,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Light probe")]
     read: ReadOptions,
 }
 
@@ -104,12 +189,14 @@ impl ProbeOptions {
         self.probe.load(&self.read, console)
     }
 
+    /// The files that this reads.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        self.probe.files()
+    }
+
     /// The probe as the user named it.
     pub(crate) fn name(&self) -> String {
-        match &self.probe.0 {
-            Source::Path(path) => path.display().to_string(),
-            Source::Builtin(name) => format!("builtin:{name}"),
-        }
+        self.probe.name()
     }
 }
 
@@ -123,10 +210,23 @@ pub(crate) fn probe(text: &str) -> Result<ProbeSource, std::convert::Infallible>
 }
 
 impl ProbeSource {
+    /// The probe as the user named it.
+    pub(crate) fn name(&self) -> String {
+        self.0.name()
+    }
+
+    /// The files that this reads.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        self.0.files()
+    }
+
     /// Loads the probe and tells what was changed in it.
     pub(crate) fn load(&self, read: &ReadOptions, console: &Console) -> Result<Environment> {
         let path = match &self.0 {
-            Source::Path(path) => path,
+            Source::Path(path) => {
+                check_kind(path, Kind::Probe, &[probe_io::BUILTINS])?;
+                path
+            }
             Source::Builtin(name) => {
                 return Ok(probe_io::builtin(name).ok_or_else(|| unknown(name, &[probe_io::BUILTINS]))?);
             }
@@ -200,8 +300,14 @@ enum NonFiniteName {
     Clamp,
 }
 
+/// Fails where it shows beforehand that `path` is no baked file.
+pub(crate) fn check_baked(path: &Path) -> Result<()> {
+    check_kind(path, Kind::Baked, &[])
+}
+
 /// Reads a baked file.
 pub(crate) fn prt(path: &Path) -> Result<Prt> {
+    check_baked(path)?;
     Prt::read(path).with_context(|| path.display().to_string())
 }
 

@@ -13,12 +13,13 @@ use serde_json::{Value, json};
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   relume uv house.glb
-  relume uv house.glb --sheet mesh --layout house-uv.png
-  relume uv builtin:teacup --unwrap --texels-per-metre 200 --layout teacup-uv.png
+  relume uv house.glb --sheet mesh --image house-uv.png
+  relume uv builtin:teacup --unwrap --texels-per-metre 200 --image teacup-uv.png
 
-Looks at the second texture coordinates. Ends with status 1 where a triangle lies outside of the unit square, upon another, folded,
-without area or without coordinates; of each the first fault is told, with mesh and number. --unwrap shows how the scene would be cut
-and how dense its sheet would be; it writes no scene. The picture shows each chart in a colour of its own.";
+Looks at the second texture coordinates. Ends with status 1 where a triangle lies outside of the unit square, \
+upon another, folded, without area or without coordinates; of each the first fault is told, with mesh and \
+number. --unwrap shows how the scene would be cut and how dense its sheet would be; it writes no scene. The \
+picture shows each chart in a colour of its own.";
 
 const COLUMNS: Columns =
     Columns(&[(34, Side::Left), (9, Side::Right), (7, Side::Right), (7, Side::Right), (8, Side::Right)]);
@@ -37,17 +38,18 @@ pub(crate) struct Options {
     #[arg(long, conflicts_with = "sheet")]
     unwrap: bool,
     /// Density of what is unwrapped.
-    #[arg(long, value_name = "D", requires = "unwrap", conflicts_with = "size", value_parser = density)]
+    #[arg(long, value_name = "D", requires = "unwrap", conflicts_with = "texels", value_parser = density)]
     texels_per_metre: Option<f32>,
     /// Columns of the sheet: of what is unwrapped, and of the picture.
-    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(16..=LARGEST_SIDE))]
-    size: u32,
+    #[arg(long, alias = "size", value_name = "N", default_value_t = 1024,
+          value_parser = clap::value_parser!(u32).range(16..=LARGEST_SIDE))]
+    texels: u32,
     /// Free texels around each chart of what is unwrapped.
     #[arg(long, value_name = "N", default_value_t = 2, requires = "unwrap", value_parser = clap::value_parser!(u32).range(0..=64))]
     padding: u32,
     /// A picture of the sheet: .png. With `--sheet mesh`, all sheets upon each other.
-    #[arg(long, value_name = "FILE", value_parser = png)]
-    layout: Option<Target>,
+    #[arg(long, alias = "layout", value_name = "FILE", value_parser = png)]
+    image: Option<Target>,
     /// List every fault.
     #[arg(long)]
     all: bool,
@@ -65,7 +67,7 @@ enum SheetName {
 }
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
-    options.layout.as_ref().map_or(Ok(()), |target| output::check(&target.path))?;
+    options.image.as_ref().map_or(Ok(()), |target| output::check(&target.path, &options.scene.files()))?;
     let mut scene = options.scene.load(console)?;
     let all: Vec<usize> = (0..scene.meshes.len()).collect();
     let atlas = if options.unwrap { Some(unwrap(&mut scene, &all, &options.as_unwrap(), console)?) } else { None };
@@ -77,8 +79,8 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         // They have no place, which is counted, and can have none.
         faults.retain(|fault| fault.kind != FaultKind::Flat);
     }
-    if let Some(target) = &options.layout {
-        let size = atlas.map_or(Size { width: options.size, height: options.size }, |atlas| Size {
+    if let Some(target) = &options.image {
+        let size = atlas.map_or(Size { width: options.texels, height: options.texels }, |atlas| Size {
             width: atlas.width,
             height: atlas.height,
         });
@@ -90,7 +92,10 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         as_text(&scene, atlas.as_ref(), &faults, if options.all { usize::MAX } else { LISTED })
     })?;
     match faults.len() {
-        0 => Ok(()),
+        0 => {
+            console.next(&format!("{} --storage maps", options.scene.bake_command()));
+            Ok(())
+        }
         1 => bail!("{}: 1 fault in the light-map coordinates", scene.name),
         n => bail!("{}: {n} faults in the light-map coordinates", scene.name),
     }
@@ -115,7 +120,7 @@ fn png(text: &str) -> Result<Target, String> {
 
 impl Options {
     fn as_unwrap(&self) -> Unwrap {
-        let density = self.texels_per_metre.map_or(Density::Side(self.size), Density::PerMetre);
+        let density = self.texels_per_metre.map_or(Density::Side(self.texels), Density::PerMetre);
         Unwrap { density, padding: self.padding }
     }
 }

@@ -59,7 +59,8 @@ fn damaged_files_are_refused_and_old_outputs_stay() {
     let folder = folder.path();
     bake(folder);
     let sound = fs::read(folder.join("a.prt")).unwrap();
-    fs::write(folder.join("a.png"), "an old picture").unwrap();
+    let old = b"\x89PNG\r\n\x1a\nan old picture";
+    fs::write(folder.join("a.png"), old).unwrap();
     let mut flipped = sound.clone();
     *flipped.last_mut().unwrap() ^= 1;
     for (bytes, reason) in
@@ -71,7 +72,7 @@ fn damaged_files_are_refused_and_old_outputs_stay() {
         assert!(fail(folder, &["inspect", "a.prt"]).contains("a.prt"));
         fail(folder, &["export", "a.prt", "-o", "out"]);
     }
-    assert_eq!(fs::read(folder.join("a.png")).unwrap(), b"an old picture");
+    assert_eq!(fs::read(folder.join("a.png")).unwrap(), old);
     assert_eq!(files(folder), ["a.png", "a.prt"]);
 }
 

@@ -61,7 +61,8 @@ fn a_furnace_half_blocked_by_white_surfaces_is_still_one() {
     for storage in STORAGES {
         let closed = metal_wall(storage, 0.5, &open, Some(bounced(&belt(0.0, 0.6))));
         let leaking = metal_wall(storage, 0.5, &open, None);
-        let [closed, leaking] = [&closed, &leaking].map(|prt| Renderer::without_window(prt, &sky).expect("a sound scene"));
+        let [closed, leaking] =
+            [&closed, &leaking].map(|prt| Renderer::without_window(prt, &sky).expect("a sound scene"));
         let all = Lobe::ALL.into_iter().flat_map(|lobe| ROUGHNESSES.map(|roughness| (lobe, roughness)));
         for (lobe, roughness) in all {
             let error = furnace_error(&closed, lobe, roughness, false);

@@ -115,10 +115,8 @@ impl Gpu {
 
 /// The adapter of one of `backends`.
 fn adapter(backends: wgpu::Backends, driver: Driver) -> Result<wgpu::Adapter, Error> {
-    let descriptor = wgpu::InstanceDescriptor {
-        backends,
-        ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
-    };
+    let descriptor =
+        wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle_from_env() };
     let options = wgpu::RequestAdapterOptions {
         power_preference: wgpu::PowerPreference::HighPerformance,
         force_fallback_adapter: driver == Driver::Software,

@@ -290,7 +290,8 @@ fn clustered_vertices_are_lit_as_exact_ones() {
         assert!(distance.is_small(), "{distance:?}");
     }
     let picture = Renderer::without_window(&gpu, &prt, &environment()).unwrap().draw(&turned).unwrap();
-    let other = render_cpu::Renderer::without_window(&exact, &environment()).unwrap().draw(&cpu_frame(&frame())).unwrap();
+    let other =
+        render_cpu::Renderer::without_window(&exact, &environment()).unwrap().draw(&cpu_frame(&frame())).unwrap();
     assert!(!compare::distance(&picture, &other).is_small(), "can fail");
 }
 
@@ -311,7 +312,8 @@ fn what_is_not_there_costs_nothing() {
     assert!(distance.is_small(), "{distance:?}");
     let untextured = Prt { transfer_textures: None, ..prt.clone() };
     let picture = textured.draw(&frame()).unwrap();
-    let other = render_cpu::Renderer::without_window(&untextured, &environment()).unwrap().draw(&cpu_frame(&frame())).unwrap();
+    let other =
+        render_cpu::Renderer::without_window(&untextured, &environment()).unwrap().draw(&cpu_frame(&frame())).unwrap();
     assert!(!compare::distance(&picture, &other).is_small(), "can fail: the texture must show");
 }
 

@@ -155,7 +155,8 @@ fn frames_of_one_scene_are_the_same_again() {
 #[test]
 fn frames_that_make_no_sense_are_refused() {
     let Some(gpu) = gpu() else { return };
-    let mut renderer = Renderer::without_window(&gpu, &furnace(), &Environment::constant([1.0; 3])).expect("a sound scene");
+    let mut renderer =
+        Renderer::without_window(&gpu, &furnace(), &Environment::constant([1.0; 3])).expect("a sound scene");
     let plain = Frame::plain(camera(), 8, 8);
     let broken = [
         Frame { width: 0, ..plain.clone() },

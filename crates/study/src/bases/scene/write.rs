@@ -95,7 +95,7 @@ impl Comparison {
     /// The same for any basis in any encoding.
     pub(crate) fn options_of(&self, basis: Basis, encoding: Encoding) -> String {
         let (basis, encoding) = (typed(basis), encoding.id());
-        format!("--storage texture --light fixed {} --basis {basis} --encoding {encoding}", self.sheet_options)
+        format!("--storage texture --lighting fixed {} --basis {basis} --encoding {encoding}", self.sheet_options)
     }
 
     fn notes(&self) -> String {
