@@ -1,10 +1,13 @@
 //! `relume light`: the spherical harmonics coefficients of a light probe.
 
 use crate::console::Console;
+use crate::draw::Window;
 use crate::output;
+use crate::render;
 use crate::source::{self, ProbeSource, ReadOptions};
 use crate::usage::Usage;
 use anyhow::{Context, Result};
+use glam::Quat;
 use sh_math::Bands;
 use std::path::PathBuf;
 
@@ -12,6 +15,7 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   relume light kitchen.hdr --bands 5 --format json -o kitchen.json
   relume light builtin:sky --bands 3 --format npy -o sky.npy
+  relume light kitchen.exr --layer beauty --rotate 90,0,0 --window auto -o kitchen.npy
 
 The array has the shape [n*n, 3]; index l(l+1)+m, real orthonormal harmonics without Condon-Shortley phase.";
 
@@ -29,6 +33,12 @@ pub(crate) struct Options {
     /// The file to write.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    /// Turns the light, in degrees: yaw about y (upwards), then pitch about the turned x, then roll about the turned z.
+    #[arg(long, value_name = "YAW,PITCH,ROLL", default_value = "0,0,0", value_parser = render::rotation, allow_hyphen_values = true)]
+    rotate: Quat,
+    /// What is done against ringing under a strong small light; see docs/shading.md.
+    #[arg(long, value_enum, default_value_t = Window::None)]
+    window: Window,
     #[command(flatten)]
     read: ReadOptions,
 }
@@ -65,7 +75,9 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let format = options.format()?;
     output::check(&options.output, &options.probe.files())?;
     let environment = options.probe.load(&options.read, console)?;
-    let light = sh_math::project(options.bands, environment.samples());
+    // As a picture of the light is made: windowed, then turned; what is not asked for changes no bit.
+    let light = options.window.apply(&sh_math::project(options.bands, environment.samples()));
+    let light = if options.rotate == Quat::IDENTITY { light } else { light.rotated(options.rotate) };
     let path = &options.output;
     let written = match format {
         Format::Npy => coeff_io::export::light_npy(&light, path),

@@ -46,7 +46,7 @@ pub(crate) struct Options {
     /// Columns and rows.
     #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size, help_heading = "Image")]
     size: Size,
-    /// Turns the light, in degrees: yaw about the upward axis, then pitch about x, then roll about z.
+    /// Turns the light, in degrees: yaw about y (upwards), then pitch about the turned x, then roll about the turned z.
     #[arg(long, value_name = "YAW,PITCH,ROLL", default_value = "0,0,0", value_parser = rotation, allow_hyphen_values = true, help_heading = "Light probe")]
     rotate: Quat,
     /// The view: the name of a camera, or eye x,y,z, target x,y,z and vertical angle of view in degrees.
@@ -223,7 +223,7 @@ fn milliseconds(took: Duration) -> f64 {
 }
 
 /// Parses `YAW,PITCH,ROLL` in degrees into the rotation from light to world.
-fn rotation(text: &str) -> Result<Quat, String> {
+pub(crate) fn rotation(text: &str) -> Result<Quat, String> {
     let angles: Option<Vec<f32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     match angles.as_deref() {
         Some(&[yaw, pitch, roll]) if [yaw, pitch, roll].iter().all(|v| v.is_finite()) => {
@@ -245,6 +245,9 @@ mod tests {
         assert!(turned("90,0,0", Vec3::Z).distance(Vec3::X) < 1e-6);
         assert!(turned("0,90,0", Vec3::Y).distance(Vec3::Z) < 1e-6);
         assert!(turned("0,0,90", Vec3::X).distance(Vec3::Y) < 1e-6);
+        // Intrinsic turns: after the yaw the pitch is about -z of the world, after both the roll about -y.
+        assert!(turned("90,90,0", Vec3::Y).distance(Vec3::X) < 1e-6);
+        assert!(turned("0,90,90", Vec3::X).distance(Vec3::Z) < 1e-6);
         assert!(rotation("1,2").is_err() && rotation("a,b,c").is_err() && rotation("0,0,inf").is_err());
     }
 }
