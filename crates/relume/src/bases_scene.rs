@@ -79,7 +79,13 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     output::check_all(folder, &FILES, &[scene.files(), probe.files()].concat())?;
     let mut scene = scene.load(console)?;
     let environment = probe.load(&options.read, console)?;
-    let choice = SheetChoice { texels: options.texels, unwrap: options.unwrap, padding: PADDING, only: Vec::new() };
+    let choice = SheetChoice {
+        texels: options.texels,
+        asked: false,
+        unwrap: options.unwrap,
+        padding: PADDING,
+        only: Vec::new(),
+    };
     let sheets = choice.sheets(&mut scene, console)?;
     interrupt::watch()?;
     let found = bake(&scene, &settings, &sheets, &environment, options.window, console)?;

@@ -123,7 +123,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
 
 impl Options {
     fn sheet_choice(&self) -> SheetChoice {
-        SheetChoice { texels: self.texels, unwrap: false, padding: PADDING, only: Vec::new() }
+        SheetChoice { texels: self.texels, asked: false, unwrap: false, padding: PADDING, only: Vec::new() }
     }
 
     /// The scene with coordinates of light maps and their sheets, where normal maps or the user ask for them.

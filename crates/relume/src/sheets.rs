@@ -2,10 +2,10 @@
 
 use crate::console::Console;
 use crate::usage::Usage;
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use bake::SheetSettings;
 use scene::Scene;
-use scene::lightmap::{self, Density, FaultKind, ObjectOptions, Unwrap};
+use scene::lightmap::{self, Atlas, Density, Fault, FaultKind, Layouts, ObjectOptions, Unwrap, UnwrapError};
 
 /// Share of a sheet that unwrapped surfaces are taken to fill, to foresee its size.
 const FILLED: f64 = 0.6;
@@ -15,12 +15,20 @@ const POORLY: f32 = 0.35;
 pub(crate) const PADDING: u32 = 2;
 /// Fewest texels along a side of a sheet.
 pub(crate) const SMALLEST: u32 = 16;
+/// Most texels along a side that sheets grow to where nobody asked for a size.
+const MOST_UNASKED: u32 = 4096;
+/// Most texels along a side that can be asked for.
+pub(crate) const MOST_TEXELS: u32 = 8192;
+/// Meshes that a notice names.
+const NAMED: usize = 3;
 
 /// How fine sheets are, and whose coordinates they have.
 #[derive(Debug, Clone)]
 pub(crate) struct SheetChoice {
     /// Texels along a side: about so many times as many in all, shared by area.
     pub(crate) texels: u32,
+    /// Whether so many were asked for; else sheets grow where charts need it.
+    pub(crate) asked: bool,
     /// Unwraps all surfaces, whatever coordinates the scene brings.
     pub(crate) unwrap: bool,
     /// Free texels around each chart that is unwrapped.
@@ -36,26 +44,43 @@ impl SheetChoice {
         format!("--texels {}{unwrap}", self.texels)
     }
 
-    /// The sheets for a scene, whose surfaces are unwrapped where their own coordinates do not serve. What has normal maps is marked as
-    /// directional.
+    /// The sheets for a scene: by coordinates of its own where they serve; elsewhere its charts are packed anew, and what has none is
+    /// unwrapped. What has normal maps is marked as directional.
     pub(crate) fn sheets(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
         self.check_names(scene)?;
-        match self.own(scene, console) {
-            Some(sheets) => Ok(sheets),
-            None => self.unwrapped(scene, console),
-        }
+        let meshes = self.meshes(scene);
+        let found = match self.unwrap {
+            true => Layouts { none: meshes.clone(), ..Layouts::default() },
+            false => lightmap::layouts(scene, &meshes, self.texels, self.most()),
+        };
+        tell(&found, scene, console);
+        let pages = found.pages.iter().map(|(meshes, side)| sheet(scene, meshes.clone(), [*side; 2]));
+        let mut sheets: Vec<SheetSettings> = pages.collect();
+        sheets.extend(self.unwrapped(scene, &meshes, &found, console)?);
+        Ok(sheets)
     }
 
     /// A sheet for each mesh, by its share of the area: by its own coordinates where they serve, else it is unwrapped alone.
     pub(crate) fn per_object(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
         self.check_names(scene)?;
         let meshes = self.meshes(scene);
-        let options = ObjectOptions { texels: self.texels, padding: self.padding, unwrap: self.unwrap };
         let progress = console.progress();
-        let found =
-            lightmap::objects(scene, &meshes, &options, &|stage, done, total| progress.set(stage, done, total))?;
+        let mut objects = |texels| {
+            let options = ObjectOptions { texels, padding: self.padding, unwrap: self.unwrap };
+            lightmap::objects(scene, &meshes, &options, &|stage, done, total| progress.set(stage, done, total))
+        };
+        let found = match objects(self.texels) {
+            Err(UnwrapError::TooCoarse { needed, .. }) if needed <= self.most() => objects(needed),
+            other => other,
+        };
         drop(progress);
+        let found = found.map_err(explained)?;
         Ok(found.into_iter().map(|object| sheet(scene, vec![object.mesh], [object.width, object.height])).collect())
+    }
+
+    /// Most texels along a side.
+    fn most(&self) -> u32 {
+        if self.asked { self.texels } else { self.texels.max(MOST_UNASKED) }
     }
 
     fn check_names(&self, scene: &Scene) -> Result<()> {
@@ -68,73 +93,92 @@ impl SheetChoice {
         }
     }
 
-    /// The sheets that the coordinates of the scene make: one for all meshes or one for each, whichever has no faults.
-    fn own(&self, scene: &Scene, console: &Console) -> Option<Vec<SheetSettings>> {
-        let meshes = self.meshes(scene);
-        if self.unwrap || meshes.iter().any(|&mesh| scene.meshes[mesh].uv1.is_empty()) {
-            return None;
-        }
-        let serves = |sheet: &[usize]| lightmap::faults(scene, sheet).iter().all(|fault| fault.kind == FaultKind::Flat);
-        if serves(&meshes) {
-            return Some(vec![sheet(scene, meshes, [self.texels; 2])]);
-        }
-        if meshes.iter().all(|&mesh| serves(&[mesh])) {
-            let all: f64 = meshes.iter().map(|&mesh| area(scene, mesh)).sum();
-            let side = |mesh: usize| {
-                let side = f64::from(self.texels) * (area(scene, mesh) / all).sqrt();
-                (side.round() as u32).clamp(SMALLEST, self.texels)
-            };
-            return Some(meshes.iter().map(|&mesh| sheet(scene, vec![mesh], [side(mesh); 2])).collect());
-        }
-        console
-            .notice("the light-map coordinates of the scene do not serve (see relume uv): its surfaces are unwrapped");
-        None
-    }
-
-    /// Sheets of the program's own: one for what has normal maps and one for the rest, as dense.
-    fn unwrapped(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
-        let (bent, plain): (Vec<usize>, Vec<usize>) =
-            self.meshes(scene).into_iter().partition(|&mesh| is_bent(scene, mesh));
+    /// Sheets of the program's own for all that has no page: one for what has normal maps and one for the rest, as dense.
+    fn unwrapped(
+        &self,
+        scene: &mut Scene,
+        meshes: &[usize],
+        found: &Layouts,
+        console: &Console,
+    ) -> Result<Vec<SheetSettings>> {
+        let mut left: Vec<usize> = found.charts.iter().chain(&found.none).copied().collect();
+        left.sort_unstable();
+        let (bent, plain): (Vec<usize>, Vec<usize>) = left.into_iter().partition(|&mesh| is_bent(scene, mesh));
         let groups: Vec<Vec<usize>> = [bent, plain].into_iter().filter(|group| !group.is_empty()).collect();
-        let all: f64 = groups.iter().flatten().map(|&mesh| area(scene, mesh)).sum();
+        let all: f64 = meshes.iter().map(|&mesh| area(scene, mesh)).sum();
         let density = f64::from(self.texels) * (FILLED / all.max(f64::MIN_POSITIVE)).sqrt();
-        let one = groups.len() == 1;
+        let one = groups.len() == 1 && found.pages.is_empty();
         let mut sheets = Vec::new();
         for group in groups {
             let density = match one {
                 true => Density::Side(self.texels),
                 false => Density::PerMetre(density as f32),
             };
-            let size = self.unwrap_group(scene, &group, density, console)?;
-            sheets.push(sheet(scene, group, size));
+            let options = Unwrap { density, padding: self.padding };
+            let atlas = self.unwrap_group(scene, &group, &found.charts, &options, console)?;
+            sheets.push(sheet(scene, group, [atlas.width, atlas.height]));
         }
         Ok(sheets)
     }
 
-    /// Unwraps meshes into one sheet; returns its sides.
+    /// Unwraps meshes into one sheet.
     fn unwrap_group(
         &self,
         scene: &mut Scene,
         group: &[usize],
-        density: Density,
+        kept: &[usize],
+        options: &Unwrap,
         console: &Console,
-    ) -> Result<[u32; 2]> {
+    ) -> Result<Atlas> {
         let progress = console.progress();
-        let options = Unwrap { density, padding: self.padding };
-        let atlas = lightmap::unwrap(scene, group, &options, &|stage, done, total| progress.set(stage, done, total))?;
+        let told = |stage, done, total| progress.set(stage, done, total);
+        let atlas = lightmap::unwrap_resolved(scene, group, kept, options, self.most(), &told).map_err(explained)?;
         drop(progress);
+        let (width, height) = (atlas.width, atlas.height);
+        if u64::from(width) * u64::from(height) > u64::from(self.texels).pow(2) {
+            console.notice(&format!("{} charts need a sheet of {width} x {height} texels", atlas.charts));
+        }
         let text = format!("{} charts fill {:.0} % of their sheet", atlas.charts, 100.0 * atlas.filled);
         match atlas.filled < POORLY {
             true => console.notice(&format!("{text}: more --texels or less --padding would hold more light in it")),
             false => console.detail(&text),
         }
-        Ok([atlas.width, atlas.height])
+        Ok(atlas)
     }
 
     /// Meshes that get light maps: surfaces that stop light, or those of them that are named. Others are drawn by their vertices.
     fn meshes(&self, scene: &Scene) -> Vec<usize> {
         let wanted = |mesh: usize| self.only.is_empty() || self.only.iter().any(|name| is_named(scene, mesh, name));
         mapped(scene).into_iter().filter(|&mesh| wanted(mesh)).collect()
+    }
+}
+
+/// Names the meshes whose own coordinates do not serve, and says what becomes of them.
+fn tell(found: &Layouts, scene: &Scene, console: &Console) {
+    let is_kept = |fault: &&Fault| found.charts.contains(&fault.mesh);
+    let (kept, lost): (Vec<&Fault>, Vec<&Fault>) = found.faults.iter().partition(is_kept);
+    for (faults, what) in [(kept, "its charts are packed anew"), (lost, "it is unwrapped")] {
+        for fault in faults.iter().take(NAMED) {
+            let name = &scene.meshes[fault.mesh].name;
+            let place = match fault.kind {
+                FaultKind::Sparse(_) => String::new(),
+                _ => format!("triangle {}: ", fault.triangle),
+            };
+            console
+                .notice(&format!("the light-map coordinates of '{name}' do not serve ({place}{}): {what}", fault.kind));
+        }
+        if faults.len() > NAMED {
+            console.notice(&format!("the same of {} more meshes (see relume uv)", faults.len() - NAMED));
+        }
+    }
+}
+
+/// With the option that gives more texels.
+fn explained(error: UnwrapError) -> anyhow::Error {
+    match error {
+        UnwrapError::TooCoarse { needed, .. } if needed <= MOST_TEXELS => anyhow!("{error}: use --texels {needed}"),
+        UnwrapError::TooCoarse { .. } => anyhow!("{error}: name the meshes that get light maps with --mapped"),
+        other => other.into(),
     }
 }
 

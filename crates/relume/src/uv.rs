@@ -17,8 +17,9 @@ Examples:
   relume uv builtin:teacup --unwrap --texels-per-metre 200 --image teacup-uv.png
 
 Looks at the second texture coordinates. Ends with status 1 where a triangle lies outside of the unit square, \
-upon another, folded, without area or without coordinates; of each the first fault is told, with mesh and \
-number. --unwrap shows how the scene would be cut and how dense its sheet would be; it writes no scene. The \
+upon another, folded, without area or without coordinates; where a chart has less than four texels or none between \
+itself and another; and where less than a twentieth of the sheet is used. Of each the first fault is told, with mesh \
+and number. --unwrap shows how the scene would be cut and how dense its sheet would be; it writes no scene. The \
 picture shows each chart in a colour of its own.";
 
 const COLUMNS: Columns =
@@ -40,7 +41,7 @@ pub(crate) struct Options {
     /// Density of what is unwrapped.
     #[arg(long, value_name = "D", requires = "unwrap", conflicts_with = "texels", value_parser = density)]
     texels_per_metre: Option<f32>,
-    /// Columns of the sheet: of what is unwrapped, and of the picture.
+    /// Columns of the sheet: of what is looked at or unwrapped, and of the picture.
     #[arg(long, alias = "size", value_name = "N", default_value_t = 1024,
           value_parser = clap::value_parser!(u32).range(16..=LARGEST_SIDE))]
     texels: u32,
@@ -71,9 +72,10 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let mut scene = options.scene.load(console)?;
     let all: Vec<usize> = (0..scene.meshes.len()).collect();
     let atlas = if options.unwrap { Some(unwrap(&mut scene, &all, &options.as_unwrap(), console)?) } else { None };
+    let size = atlas.map_or([options.texels; 2], |atlas| [atlas.width, atlas.height]);
     let mut faults: Vec<Fault> = match options.sheet {
-        SheetName::Scene => lightmap::faults(&scene, &all),
-        SheetName::Mesh => all.iter().flat_map(|&mesh| lightmap::faults(&scene, &[mesh])).collect(),
+        SheetName::Scene => all_faults(&scene, &all, size),
+        SheetName::Mesh => all.iter().flat_map(|&mesh| all_faults(&scene, &[mesh], size)).collect(),
     };
     if options.unwrap {
         // They have no place, which is counted, and can have none.
@@ -99,6 +101,14 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         1 => bail!("{}: 1 fault in the light-map coordinates", scene.name),
         n => bail!("{}: {n} faults in the light-map coordinates", scene.name),
     }
+}
+
+/// What is wrong with the coordinates of meshes that share a sheet, whatever its size and at this size.
+fn all_faults(scene: &Scene, sheet: &[usize], size: [u32; 2]) -> Vec<Fault> {
+    let mut faults = lightmap::faults(scene, sheet);
+    faults.extend(lightmap::crowding(scene, sheet, size));
+    faults.sort_by_key(|fault| (fault.mesh, fault.triangle));
+    faults
 }
 
 fn unwrap(scene: &mut Scene, sheet: &[usize], options: &Unwrap, console: &Console) -> Result<Atlas> {
@@ -176,6 +186,15 @@ fn sentence(scene: &Scene, fault: &Fault) -> String {
                 name(mesh)
             )
         }
+        FaultKind::Touches { mesh, triangle } => {
+            format!(
+                "{}, triangle {}: its chart has no free texel to that of triangle {triangle} of {}\n",
+                name(fault.mesh),
+                fault.triangle,
+                name(mesh)
+            )
+        }
+        FaultKind::Sparse(_) => format!("{}: {}\n", name(fault.mesh), fault.kind),
         kind => format!("{}, triangle {}: {kind}\n", name(fault.mesh), fault.triangle),
     }
 }
@@ -188,7 +207,7 @@ fn as_json(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault]) -> String {
         .iter()
         .map(|fault| {
             let mut value = json!({ "mesh": fault.mesh, "triangle": fault.triangle, "what": fault.kind.to_string() });
-            if let FaultKind::Overlaps { mesh, triangle } = fault.kind {
+            if let FaultKind::Overlaps { mesh, triangle } | FaultKind::Touches { mesh, triangle } = fault.kind {
                 value["other"] = json!({ "mesh": mesh, "triangle": triangle });
             }
             value

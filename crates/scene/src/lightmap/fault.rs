@@ -44,6 +44,17 @@ pub enum FaultKind {
         /// The other triangle.
         triangle: usize,
     },
+    /// Its chart has so few texels that they cannot hold what lies on it.
+    Tiny(f64),
+    /// Less than a texel lies between its chart and another: their light mixes.
+    Touches {
+        /// Mesh of the other.
+        mesh: usize,
+        /// First triangle of the other chart.
+        triangle: usize,
+    },
+    /// The meshes use so small a share of their sheet.
+    Sparse(f64),
 }
 
 impl std::fmt::Display for FaultKind {
@@ -55,6 +66,11 @@ impl std::fmt::Display for FaultKind {
             Self::Flat => write!(out, "it has no area in the sheet"),
             Self::Folded => write!(out, "it lies the other way round than its chart"),
             Self::Overlaps { mesh, triangle } => write!(out, "it lies upon triangle {triangle} of mesh {mesh}"),
+            Self::Tiny(texels) => write!(out, "its chart has {texels:.1} texels, of the four that it needs"),
+            Self::Touches { mesh, triangle } => {
+                write!(out, "its chart has no free texel to that of triangle {triangle} of mesh {mesh}")
+            }
+            Self::Sparse(share) => write!(out, "the meshes use {:.1} % of their sheet", 100.0 * share),
         }
     }
 }

@@ -5,15 +5,21 @@
 
 mod chart;
 mod cover;
+mod crowd;
 mod fault;
+mod layouts;
 mod objects;
+mod resolve;
 mod seam;
 mod texel;
 mod unwrap;
 
 pub use chart::Charts;
+pub use crowd::crowding;
 pub use fault::{Fault, FaultKind, faults, share};
+pub use layouts::{Layouts, layouts};
 pub use objects::{ObjectOptions, ObjectSheet, objects};
+pub use resolve::growth;
 pub use seam::{Seam, SeamSide, seams};
 pub use texel::{Texel, texels};
-pub use unwrap::{Atlas, Density, Unwrap, UnwrapError, unwrap};
+pub use unwrap::{Atlas, Density, Unwrap, UnwrapError, unwrap, unwrap_resolved};

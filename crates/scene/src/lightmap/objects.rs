@@ -1,10 +1,12 @@
 //! A sheet for each object, by its share of the area: so none takes texels from another (\[T\] section 4.3, texture sets).
 
-use super::{Atlas, Density, FaultKind, Unwrap, UnwrapError, faults, unwrap};
+use super::{Atlas, Density, Layouts, Unwrap, UnwrapError, layouts, unwrap_resolved};
 use crate::Scene;
 
 /// Fewest texels along a side of a sheet.
 const SMALLEST: u32 = 16;
+/// Times as many texels along a side as all sheets are to have together that the charts of one may need.
+const MOST_GROWTH: u32 = 2;
 /// Sides are whole multiples of it: levels of detail halve them without a rest.
 const STEP: u32 = 16;
 
@@ -32,11 +34,11 @@ pub struct ObjectOptions {
     pub unwrap: bool,
 }
 
-/// Gives each of the meshes a sheet: by its own second texture coordinates where they serve, else it is unwrapped alone, into a sheet that grows
-/// until its charts fit.
+/// Gives each of the meshes a sheet: by its own second texture coordinates where they serve, else it is unwrapped alone. Sheets grow until
+/// their charts fit and have enough texels.
 ///
 /// # Errors
-/// [`UnwrapError`] where even a sheet of all texels is too small, or a mesh cannot be unwrapped.
+/// [`UnwrapError`] where even a sheet of twice all texels along a side is too small, or a mesh cannot be unwrapped.
 pub fn objects(
     scene: &mut Scene,
     meshes: &[usize],
@@ -44,20 +46,26 @@ pub fn objects(
     progress: &(dyn Fn(&'static str, u64, u64) + Sync),
 ) -> Result<Vec<ObjectSheet>, UnwrapError> {
     let all: f64 = meshes.iter().map(|&mesh| area(scene, mesh)).sum();
+    let most = MOST_GROWTH * options.texels;
     let mut sheets = Vec::new();
     for &mesh in meshes {
         let share = (area(scene, mesh) / all.max(f64::MIN_POSITIVE)).sqrt();
         let side = (f64::from(options.texels) * share).round() as u32;
         let side = side.clamp(SMALLEST.min(options.texels), options.texels);
-        let serves = !options.unwrap && !scene.meshes[mesh].uv1.is_empty() && {
-            faults(scene, &[mesh]).iter().all(|fault| fault.kind == FaultKind::Flat)
+        let own = if options.unwrap { Layouts::default() } else { layouts(scene, &[mesh], side, most) };
+        let sheet = match own.pages.first() {
+            Some((_, side)) => {
+                let side = side.next_multiple_of(STEP);
+                ObjectSheet { mesh, width: side, height: side, atlas: None }
+            }
+            None => {
+                let asked = Unwrap { density: Density::Side(side), padding: options.padding };
+                let atlas = unwrap_resolved(scene, &[mesh], &own.charts, &asked, most, progress)?;
+                let [width, height] = padded(scene, mesh, [atlas.width, atlas.height]);
+                ObjectSheet { mesh, width, height, atlas: Some(atlas) }
+            }
         };
-        let atlas = if serves { None } else { Some(alone(scene, mesh, side, options, progress)?) };
-        let [width, height] = match &atlas {
-            Some(atlas) => padded(scene, mesh, [atlas.width, atlas.height]),
-            None => [side.next_multiple_of(STEP); 2],
-        };
-        sheets.push(ObjectSheet { mesh, width, height, atlas });
+        sheets.push(sheet);
     }
     Ok(sheets)
 }
@@ -70,24 +78,6 @@ fn padded(scene: &mut Scene, mesh: usize, sides: [u32; 2]) -> [u32; 2] {
     wider
 }
 
-/// Unwraps one mesh into a sheet of so many texels along a side, or of twice as many until its charts fit.
-fn alone(
-    scene: &mut Scene,
-    mesh: usize,
-    side: u32,
-    options: &ObjectOptions,
-    progress: &(dyn Fn(&'static str, u64, u64) + Sync),
-) -> Result<Atlas, UnwrapError> {
-    let mut side = side;
-    loop {
-        let asked = Unwrap { density: Density::Side(side), padding: options.padding };
-        match unwrap(scene, &[mesh], &asked, progress) {
-            Err(UnwrapError::TooSmall { .. }) if side < options.texels => side = (2 * side).min(options.texels),
-            other => return other,
-        }
-    }
-}
-
 fn area(scene: &Scene, mesh: usize) -> f64 {
     let mesh = &scene.meshes[mesh];
     (0..mesh.triangles.len()).map(|triangle| mesh.area(triangle)).sum()
@@ -96,8 +86,9 @@ fn area(scene: &Scene, mesh: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lightmap::{FaultKind, faults};
 
-    const OPTIONS: ObjectOptions = ObjectOptions { texels: 128, padding: 2, unwrap: true };
+    const OPTIONS: ObjectOptions = ObjectOptions { texels: 256, padding: 2, unwrap: true };
 
     /// Texels go by area, each object has coordinates without overlap, and a small object's sheet grows until it fits.
     #[test]
