@@ -79,8 +79,7 @@ struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     fn new(scene: &'a Scene, plan: &Plan, extras: &Extras) -> Self {
-        let directional = extras.is_directional();
-        let mut kept = KeptTextures { scene, directional, index: BTreeMap::new(), textures: Vec::new() };
+        let mut kept = KeptTextures { scene, index: BTreeMap::new(), textures: Vec::new() };
         let materials: Vec<coeff_io::Material> = (0..scene.materials.len()).map(|m| kept.material(m, plan)).collect();
         let slots = || {
             materials.iter().flat_map(|m| {
@@ -175,8 +174,6 @@ fn extend_or<T: Copy>(list: &mut Vec<T>, values: impl ExactSizeIterator<Item = T
 /// Textures that some drawn effect needs, in order of first use.
 struct KeptTextures<'a> {
     scene: &'a Scene,
-    /// Whether normal maps bend diffuse light.
-    directional: bool,
     index: BTreeMap<u32, u32>,
     textures: Vec<coeff_io::Texture>,
 }
@@ -187,7 +184,7 @@ impl KeptTextures<'_> {
         let specular = simulates(plan, Effect::Specular) && facts.shines && !m.unlit;
         let emission = simulates(plan, Effect::Emission) && facts.emission > 0.0;
         let transmission = simulates(plan, Effect::Transmission);
-        let normal_maps = (specular || self.directional) && simulates(plan, Effect::NormalMaps);
+        let normal_maps = facts.bumpy && simulates(plan, Effect::NormalMaps);
         coeff_io::Material {
             name: m.name.clone(),
             base_color: m.base_color.to_array(),

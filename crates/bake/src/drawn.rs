@@ -90,31 +90,28 @@ pub(crate) fn glossy(table: &Table<'_>) -> PlanRow {
 
 pub(crate) fn normal_maps(table: &Table<'_>) -> PlanRow {
     let (f, d) = (table.facts, table.decisions);
-    let stake = match f.directional {
-        true => f32::from(u8::from(f.bumpy.any())),
-        false => largest(table, |m| if m.shines && m.bumpy { m.reflectance } else { 0.0 }),
-    };
+    let stake = largest(table, |m| m.bend);
     let idle = match f.idle_bumps {
         0 => String::new(),
-        n => format!("; {n} more are on matt materials, where they would bend nothing"),
+        n => format!("; {n} more bend too little to show"),
     };
-    let (decision, takes) = match f.directional {
-        true => ("directional light maps", "diffuse light is kept for every normal"),
-        false => ("bend reflections only", "the transfer takes the plain normals"),
+    let decision = match f.directional {
+        true => "directional light maps",
+        false => "bend reflections, and the light of vertices by where it comes from",
     };
-    let which = if f.directional { "materials" } else { "materials that shine" };
     let words = Words {
-        decision: if d.normal_maps { decision.into() } else { "plain transfer".into() },
+        decision: if d.normal_maps { decision.into() } else { "plain normals".into() },
         reason: match f.bumpy.count() {
-            0 => format!("none of the {which} has a normal map{idle}"),
-            n => format!("{n} {which} have normal maps; {takes}{idle}"),
+            0 => format!("no material has a normal map that shows{idle}"),
+            n => format!("{n} materials have normal maps that bend by up to {} on average{idle}", percent(stake)),
         },
         stake,
-        at_stake: match (f.bumpy.any(), f.directional) {
-            (false, true) => "nothing: no normal is bent".into(),
-            (false, false) => "nothing is drawn with them; creases in diffuse light are not modelled".into(),
-            (true, true) => "creases missing from diffuse light: up to all of it where a normal turns away".into(),
-            (true, false) => format!("creases missing from reflections of up to {} of the light", percent(stake)),
+        at_stake: match f.bumpy.any() {
+            false => "nothing: no normal is bent".into(),
+            true => format!(
+                "creases missing: up to {} of a light from the side, all of it where a normal turns away",
+                percent(stake)
+            ),
         },
     };
     let row = table.row(Effect::NormalMaps, d.normal_maps, &f.bumpy, words);

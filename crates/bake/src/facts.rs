@@ -1,7 +1,7 @@
 //! Facts about a scene that decisions rest on: materials, and what stands above which receiver.
 
 use crate::material;
-use crate::plan::allowed;
+use crate::plan::{allowed, tolerance};
 use crate::receivers::Receivers;
 use crate::world::World;
 use coeff_io::{Effect, Settings};
@@ -59,13 +59,13 @@ pub(crate) struct Facts {
     pub(crate) shiny: Named,
     /// Those that mirror light in their colour.
     pub(crate) tinted: Named,
-    /// Those with normal maps that bend something: all that shine, and with directional light maps all.
+    /// Those with normal maps that show: all that shine, with directional light maps all, and those that bend by more than the tolerance.
     pub(crate) bumpy: Named,
     /// Whether normal maps bend diffuse light.
     pub(crate) directional: bool,
     /// Whether a volume is asked for.
     pub(crate) volume: bool,
-    /// Number of materials whose normal maps bend nothing.
+    /// Number of materials whose normal maps bend too little to show.
     pub(crate) idle_bumps: usize,
     pub(crate) emissive: Named,
     pub(crate) transmissive: Named,
@@ -93,6 +93,8 @@ impl Facts {
         };
         let textures = |slot: &dyn Fn(usize) -> Option<TextureSlot>| texture_bytes(scene, slot);
         let (of, all) = (&materials, &scene.materials);
+        let least = tolerance(settings.quality);
+        let bends = |m: &material::Facts| m.bumpy && (m.shines || directional || m.bend > least);
         let scattering = || materials.iter().filter(|m| m.scatters());
         Self {
             meshes: Vec::new(),
@@ -109,10 +111,10 @@ impl Facts {
             holed: named(&|m| m.holes > 0.0),
             shiny: named(&|m| m.shines),
             tinted: named(&|m| m.tinted),
-            bumpy: named(&|m| m.bumpy && (m.shines || directional)),
+            bumpy: named(&bends),
             directional,
             volume: false,
-            idle_bumps: materials.iter().filter(|m| m.bumpy && !m.shines && !directional).count(),
+            idle_bumps: materials.iter().filter(|m| m.bumpy && !bends(m)).count(),
             emissive: named(&|m| m.emission > 0.0),
             transmissive: named(&|m| m.transmits),
             moving: Named { names: scene.moving.clone() },
@@ -120,7 +122,7 @@ impl Facts {
             gloss_bytes: textures(&|m| {
                 all[m].metallic_roughness_texture.filter(|_| of[m].shines && all[m].metallic <= 0.0)
             }),
-            bump_bytes: textures(&|m| all[m].normal_texture.filter(|_| of[m].shines)),
+            bump_bytes: textures(&|m| all[m].normal_texture.filter(|_| of[m].bumpy)),
             glow_bytes: textures(&|m| all[m].emissive_texture.filter(|_| of[m].emission > 0.0)),
             materials,
         }

@@ -35,8 +35,10 @@ pub(crate) struct Facts {
     pub(crate) tinted: bool,
     /// Largest reflectance at normal incidence.
     pub(crate) reflectance: f32,
-    /// Whether it has a normal map.
+    /// Whether it has a normal map that bends something.
     pub(crate) bumpy: bool,
+    /// Mean sine of the angle by which its normal map bends: the share of a light from the side that this adds or takes.
+    pub(crate) bend: f32,
     /// Largest radiance that it emits.
     pub(crate) emission: f32,
     /// Largest share of light that passes through.
@@ -58,6 +60,7 @@ impl Facts {
         let translucent = !material.blocks_rays() && passed > 0.0;
         let opacity = if translucent { opacity(scene, material, index) } else { 1.0 };
         let clear = material.transmission > 0.0 && !is_white(scene, material, index);
+        let bend = mean_bend(scene, material);
         let glow = Colors::srgb(scene, material.emissive_texture).largest * material.emissive;
         Self {
             albedo,
@@ -71,7 +74,8 @@ impl Facts {
             shines: metallic > METALLIC || material.roughness * gloss.smallest.y < SHINY,
             tinted: metallic > METALLIC && is_colored(scene, material, index),
             reflectance: DIELECTRIC.max(metallic * color.max_element()).min(1.0),
-            bumpy: material.normal_texture.is_some(),
+            bumpy: bend > 0.0,
+            bend,
             emission: glow.max_element(),
             passes: passed,
         }
@@ -91,6 +95,7 @@ impl Facts {
             tinted: false,
             reflectance: 0.0,
             bumpy: false,
+            bend: 0.0,
             emission: 0.0,
             passes: 0.0,
         }
@@ -121,6 +126,22 @@ pub(crate) fn hole_share(scene: &Scene, index: usize) -> f32 {
             count as f32 / texture.rgba.len().max(1) as f32
         }
     }
+}
+
+/// Mean sine of the angle between what a normal map says and the plain normal; texels within rounding of it count as plain.
+fn mean_bend(scene: &Scene, material: &Material) -> f32 {
+    let Some(slot) = material.normal_texture else { return 0.0 };
+    let scale = f64::from(material.normal_scale);
+    let sine = |texel: &[u8; 4]| {
+        let [x, y, z] = [texel[0], texel[1], texel[2]].map(|value| 2.0 * f64::from(value) / 255.0 - 1.0);
+        // 127 and 128 stand for 0.
+        let [x, y] = [x, y].map(|value| if value.abs() < 1.1 / 255.0 { 0.0 } else { scale * value });
+        let aside = x * x + y * y;
+        let length = aside + z.max(0.0).powi(2);
+        if length > 0.0 { (aside / length).sqrt() } else { 0.0 }
+    };
+    let texels = &scene.textures[slot.texture as usize].rgba;
+    (texels.iter().map(sine).sum::<f64>() / texels.len().max(1) as f64) as f32
 }
 
 /// Largest share of light that passes through a surface that transmits or blends.
@@ -219,6 +240,18 @@ mod tests {
         assert!(facts(painted(0.0, 1.0), &[[0, 255, 0, 255], [0, 20, 0, 255]]).shines, "a smooth texel");
         assert!(facts(painted(1.0, 1.0), &[[0, 255, 0, 255], [0, 255, 255, 255]]).shines, "a metal texel");
         assert!(!facts(painted(1.0, 1.0), &[[0, 255, 0, 255]]).shines, "can fail: rough and no metal");
+    }
+
+    /// A flat normal map bends nothing; one that leans by 45 degrees in half of its texels bends by half the sine.
+    #[test]
+    fn only_texels_that_lean_bend() {
+        let bumpy = || Material { normal_texture: slot(), ..Material::default() };
+        let flat = facts(bumpy(), &[[128, 128, 255, 255], [127, 128, 255, 255]]);
+        assert!(!flat.bumpy && flat.bend == 0.0);
+        let leaning = facts(bumpy(), &[[128, 128, 255, 255], [218, 128, 218, 255]]);
+        assert!(leaning.bumpy && (leaning.bend - 0.5 * 0.5f32.sqrt()).abs() < 1e-3, "{}", leaning.bend);
+        let scaled = Material { normal_scale: 0.0, ..bumpy() };
+        assert!(!facts(scaled, &[[218, 128, 218, 255]]).bumpy);
     }
 
     #[test]

@@ -127,10 +127,7 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
         specular: drawn(Effect::Specular, facts.shiny.any()),
         glossy,
         gloss_stake,
-        normal_maps: drawn(
-            Effect::NormalMaps,
-            facts.bumpy.any() && (facts.directional || allowed(settings, Effect::Specular)),
-        ),
+        normal_maps: drawn(Effect::NormalMaps, facts.bumpy.any()),
         emission: drawn(Effect::Emission, facts.emissive.any()),
         transmission: drawn(Effect::Transmission, facts.transmissive.any()),
         traced,
@@ -174,7 +171,7 @@ fn meshes(facts: &Facts, d: &Decisions) -> Vec<MeshPlan> {
             Effect::Masks => d.masks && material.holes > 0.0,
             Effect::Specular => d.specular && material.shines,
             Effect::Glossy => d.glossy && material.shines && mesh.shadowed > 0,
-            Effect::NormalMaps => d.normal_maps && (material.shines || facts.directional) && material.bumpy,
+            Effect::NormalMaps => d.normal_maps && material.bumpy,
             Effect::Emission => d.emission && material.emission > 0.0,
             Effect::Transmission => d.transmission && material.transmits,
             // Bands are the same for all, and motion is not simulated.

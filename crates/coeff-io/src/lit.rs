@@ -123,6 +123,22 @@ impl Maps {
 }
 
 impl Prt {
+    /// Whether a normal map bends the light of some vertices: of a mesh that neither a light map nor a transfer texture lights.
+    #[must_use]
+    pub fn bends_vertices(&self) -> bool {
+        let of_maps = self.maps.as_ref().map(|maps| &maps.sheet_of_mesh);
+        let of_textures = self.transfer_textures.as_ref().map(|textures| &textures.sheet_of_mesh);
+        let is_on_sheet = |mesh: usize| {
+            [of_maps, of_textures].into_iter().flatten().any(|sheets| sheets.get(mesh).copied().flatten().is_some())
+        };
+        let bends = |mesh: &Mesh| {
+            let material = &self.materials[mesh.material as usize];
+            material.normal_texture.is_some() && !material.unlit
+        };
+        !self.geometry.tangents.is_empty()
+            && self.meshes.iter().enumerate().any(|(index, mesh)| bends(mesh) && !is_on_sheet(index))
+    }
+
     /// Bands of light that transfer, light maps and gloss answer to, whichever has most; none where that is not supported.
     #[must_use]
     pub fn light_bands(&self) -> Option<Bands> {

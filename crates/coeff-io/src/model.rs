@@ -101,6 +101,17 @@ pub struct Transfer {
     pub openness: Vec<f32>,
 }
 
+impl Transfer {
+    /// The mean of the channels, for what asks for no colour: bands and values alone.
+    #[must_use]
+    pub fn grey(&self) -> Self {
+        let channels = self.channels.max(1) as usize;
+        let mean = |row: &[f32]| row.iter().sum::<f32>() * (1.0 / channels as f32);
+        let values = self.values.chunks_exact(channels).map(mean).collect();
+        Self { bands: self.bands, channels: 1, values, ..Self::default() }
+    }
+}
+
 /// Surface properties in the metallic-roughness model of glTF 2.0, linear.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {

@@ -7,7 +7,7 @@ use crate::light_facts::LightFacts;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
-use crate::{interrupt, output, settings, timed};
+use crate::{interrupt, look, output, settings, timed};
 use anyhow::{Context, Result};
 use coeff_io::{Prt, Quality, Settings};
 use std::ops::ControlFlow;
@@ -147,6 +147,7 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
             ));
         }
     }
+    look::tell_left_out(prt, console);
     let repairs = achieved.repairs;
     if repairs.inside + repairs.bad_normals > 0 {
         let (inside, normals) = (repairs.inside, repairs.bad_normals);

@@ -2,7 +2,7 @@
 
 use crate::console::Console;
 use crate::maps;
-use coeff_io::{MapLight, Prt};
+use coeff_io::{Effect, MapLight, Prt};
 use sh_math::hemisphere::Basis;
 
 /// How what was baked is looked at.
@@ -31,6 +31,14 @@ impl LookOptions {
     /// Whether surfaces have their own colours.
     pub(crate) fn albedo(&self) -> bool {
         self.albedo == Albedo::On
+    }
+}
+
+/// Tells where normal maps that a scene has are left out, and why.
+pub(crate) fn tell_left_out(prt: &Prt, console: &Console) {
+    let row = prt.plan.rows.iter().find(|row| row.effect == Effect::NormalMaps && !row.simulate && row.callers > 0);
+    if let Some(row) = row {
+        console.notice(&format!("normal maps are left out: {}", row.reason));
     }
 }
 

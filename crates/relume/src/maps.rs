@@ -2,7 +2,7 @@
 
 use crate::console::Console;
 use crate::gloss::{GlossOptions, SheetSet};
-use crate::sheets::{PADDING, SMALLEST, SheetChoice};
+use crate::sheets::{MOST_TEXELS, PADDING, SMALLEST, SheetChoice};
 use anyhow::Result;
 use bake::{MapSettings, TextureSettings};
 use coeff_io::Encoding;
@@ -16,8 +16,8 @@ pub(crate) const TEXELS: u32 = 1024;
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct MapOptions {
     /// Texels along a side of the sheets of light maps and transfer textures: about so many times as many in all, shared by area.
-    /// 1024 where not given.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
+    /// Where not given, 1024, and more where charts need it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=i64::from(MOST_TEXELS)))]
     texels: Option<u32>,
     /// The functions over normals that light maps are kept in: sh4, sh9, hl2, hsh4, hsh9, makhotkin4, makhotkin9, zernike3, zernike6, h4,
     /// h6, modified-h1 (an ordinary light map), modified-h4 or modified-h6, which is the default. Surfaces without normal maps keep an
@@ -122,6 +122,7 @@ impl MapOptions {
     ) -> Result<TextureSettings> {
         let choice = SheetChoice {
             texels: self.texels.unwrap_or(texels),
+            asked: self.texels.is_some(),
             unwrap: self.unwrap,
             padding: self.padding.unwrap_or(PADDING),
             only: self.mapped.clone(),
@@ -151,12 +152,16 @@ impl MapOptions {
     pub(crate) fn settings(&self, scene: &mut Scene, console: &Console) -> Result<MapSettings> {
         let choice = SheetChoice {
             texels: self.texels.unwrap_or(TEXELS),
+            asked: self.texels.is_some(),
             unwrap: self.unwrap,
             padding: self.padding.unwrap_or(PADDING),
             only: self.mapped.clone(),
         };
         let basis = self.basis.unwrap_or(Basis::ModifiedH6);
         let mut sheets = choice.sheets(scene, console)?;
+        if basis == Basis::ModifiedH1 && sheets.iter().any(|sheet| sheet.directional) {
+            console.notice("normal maps are left out: an ordinary light map (--basis modified-h1) answers to none");
+        }
         // An ordinary light map answers to no normal map.
         sheets.iter_mut().for_each(|sheet| sheet.directional &= basis != Basis::ModifiedH1);
         for sheet in &sheets {

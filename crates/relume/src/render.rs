@@ -147,6 +147,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         frame.check_for(&prt).map_err(|error| crate::usage::Usage(error.to_string()))?;
     }
     look::tell(&prt, &options.probe.name(), &options.look, console);
+    look::tell_left_out(&prt, console);
     gloss_look::tell(&prt, &frame.gloss, console);
     let environment = options.probe.load(console)?;
     if let (Some(count), Some(visitor)) = (options.frames, visitor.as_ref().filter(|visitor| visitor.moves())) {

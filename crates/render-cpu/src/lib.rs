@@ -6,6 +6,7 @@
 //! Of the ways of gloss there is one here: what arrives is kept per light (`GlossWay::Cache`), which gives the same picture as the
 //! others; `16 n^2` bytes per texel.
 
+mod bend;
 mod bins;
 mod bloom;
 mod brdf;

@@ -23,6 +23,19 @@ pub fn vertex_radiance(transfer: &Transfer, light: &[[f32; 3]]) -> Vec<Vec3> {
     out
 }
 
+/// Luminance of what each vertex takes, times the direction that it comes from; `heading` is that of the light. Of three channels the mean
+/// is taken: they differ by what colours add to bounces.
+pub fn vertex_heading(transfer: &Transfer, heading: &[[f32; 3]]) -> Vec<Vec3> {
+    let channels = transfer.channels as usize;
+    let share = 1.0 / channels as f32;
+    let rows = transfer.values.par_chunks((heading.len() * channels).max(1));
+    rows.map(|row| {
+        let pairs = row.chunks_exact(channels).zip(heading);
+        pairs.map(|(t, &h)| Vec3::from(h) * (share * t.iter().sum::<f32>())).sum()
+    })
+    .collect()
+}
+
 fn dot_grey(transfer: &[f32], light: &[Vec4]) -> Vec3 {
     transfer.iter().zip(light).map(|(&t, &l)| l * t).sum::<Vec4>().truncate()
 }

@@ -2,7 +2,7 @@
 
 use crate::bins::{Bins, Tiles};
 use crate::image::Image;
-use crate::light::vertex_radiance;
+use crate::light::{vertex_heading, vertex_radiance};
 use crate::map::LitMaps;
 use crate::raster::{Piece, Window, pieces};
 use crate::shade::Shader;
@@ -128,7 +128,12 @@ impl<'a> Renderer<'a> {
         let view = View::new(frame, self.diagonal);
         let rotation = frame.rotation.normalize();
         let light = self.light.rotated(rotation);
-        let radiance = vertex_radiance(&self.prt.transfer, &light.with_bands(self.bands).values);
+        let own = light.with_bands(self.bands);
+        let radiance = vertex_radiance(&self.prt.transfer, &own.values);
+        let heading = match self.prt.bends_vertices() {
+            true => vertex_heading(&self.prt.transfer, &sh_math::heading(&own).values),
+            false => Vec::new(),
+        };
         let maps = basis.map(|basis| self.maps_under(&light, rotation, basis));
         let drawn = self.surfaces.draw(self.prt, &light, rotation, frame.gloss, frame.camera.eye);
         let projected: Vec<DVec3> = self.prt.geometry.positions.par_iter().map(|&p| view.project(p)).collect();
@@ -138,6 +143,7 @@ impl<'a> Renderer<'a> {
             reflection: self.reflection.as_ref(),
             srgb: &self.srgb,
             radiance: &radiance,
+            heading: &heading,
             gloss: drawn.gloss.as_ref(),
             finest: frame.gloss.level,
             light_from_world: rotation.inverse(),

@@ -1,5 +1,6 @@
 //! The colour of a surface at one sample: docs/shading.md, "Surface, per sample".
 
+use crate::bend::bent_light;
 use crate::brdf::reflectance;
 use crate::gloss::{Arrived, Gloss, Ray, Reflected, Source};
 use crate::lit::{LitSheet, Taps};
@@ -22,6 +23,8 @@ pub(crate) struct Shader<'a> {
     pub(crate) srgb: &'a SrgbTable,
     /// Diffuse radiance for albedo 1, per vertex.
     pub(crate) radiance: &'a [Vec3],
+    /// Its luminance times the direction that it comes from; empty where no normal map bends the light of vertices.
+    pub(crate) heading: &'a [Vec3],
     /// The lobe; present where the file tells what arrives at surfaces.
     pub(crate) gloss: Option<&'a Gloss>,
     /// The finest level of transfer textures that is shown.
@@ -158,7 +161,11 @@ impl Shader<'_> {
                 let uv = coordinates(&self.prt.geometry, 1, place.vertices, place.weights);
                 sheet.radiance(uv, self.bend(place).and_then(unit).unwrap_or(Vec3::Z))
             }
-            None => place.between(self.radiance),
+            None if self.heading.is_empty() || self.bend(place).is_none() => place.between(self.radiance),
+            None => {
+                let (light, heading) = (place.between(self.radiance), place.between(self.heading));
+                bent_light(light, heading, self.smooth(place), self.normal(place))
+            }
         }
     }
 

@@ -10,6 +10,7 @@ struct Glossy {
     @location(5) tangent: vec4<f32>,
     // Mirrored light, and the open share of the lobe.
     @location(6) gloss: vec4<f32>,
+    @location(7) heading: vec3<f32>,
 }
 
 // What arrives, kept once per light, in halves: RGB and visibility per function; or bounces alone.
@@ -25,7 +26,8 @@ fn place_glossy(
     @location(5) normal: vec3<f32>,
     @location(6) tangent: vec4<f32>,
     @location(7) openness: f32,
-    @location(8) row: u32,
+    @location(8) heading: vec3<f32>,
+    @location(9) row: u32,
 ) -> Glossy {
     let offset = position - view.eye;
     let uv = vec4<f32>(uv0, uv1);
@@ -34,7 +36,8 @@ fn place_glossy(
     let mirrored = normalize(2.0 * dot(plain, to_eye) * plain - to_eye);
     let lobe = lobe_about(mirrored, plain, roughness_at(uv));
     let gloss = mirrored_sums(arriving_at(lobe, row), lobe.energy);
-    return Glossy(clip_from_offset(offset), vec4<f32>(lit, openness), uv, color, offset, normal, tangent, gloss);
+    let clip = clip_from_offset(offset);
+    return Glossy(clip, vec4<f32>(lit, openness), uv, color, offset, normal, tangent, gloss, heading);
 }
 
 fn roughness_at(uv: vec4<f32>) -> f32 {
@@ -62,15 +65,17 @@ fn draw_glossy(at: Glossy) -> @location(0) vec4<f32> {
     let point = surface(at.uv, at.color);
     let to_eye = normalize(-at.offset);
     let geometric = across * select(-1.0, 1.0, dot(across, to_eye) > 0.0);
-    let shiny = Shiny(at.clip, at.lit, at.uv, at.color, at.offset, at.normal, at.tangent);
+    let shiny = Shiny(at.clip, at.lit, at.uv, at.color, at.offset, at.normal, at.tangent, at.heading);
     let normal = shading_normal(shiny, geometric);
     var own = point;
     own.roughness = gloss_roughness(point.roughness);
     let cosine = dot(normal, to_eye);
     let mirrored = normalize(2.0 * cosine * normal - to_eye);
-    let lobe = lobe_about(mirrored, unit_or(at.normal, geometric), own.roughness);
+    let plain = unit_or(at.normal, geometric);
+    let lobe = lobe_about(mirrored, plain, own.roughness);
     let light = mirrored_light(at.gloss, lobe, mirrored, own.roughness);
-    let lit = max(diffuse_light(at.lit.rgb, at.uv), vec3<f32>(0.0));
+    let diffuse = bent_light(diffuse_light(at.lit.rgb, at.uv), at.heading, plain, normal);
+    let lit = max(diffuse, vec3<f32>(0.0));
     return composite(point, lit * kept_light(cosine), light * returned(own, cosine), glow(at.uv));
 }
 

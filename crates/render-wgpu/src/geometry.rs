@@ -15,6 +15,8 @@ pub(crate) enum Attribute {
     Normal,
     Tangent,
     Openness,
+    /// Luminance of the light times the direction that it comes from.
+    Heading,
     /// Row of gloss.
     Row,
 }
@@ -22,13 +24,13 @@ pub(crate) enum Attribute {
 impl Attribute {
     /// What surfaces without shine read.
     pub(crate) const DIFFUSE: [Self; 5] = [Self::Position, Self::Lit, Self::Uv0, Self::Uv1, Self::Color];
-    /// What only surfaces that shine read besides.
-    pub(crate) const SHINY: [Self; 3] = [Self::Normal, Self::Tangent, Self::Openness];
+    /// What only surfaces that shine, or whose light a normal map bends, read besides.
+    pub(crate) const SHINY: [Self; 4] = [Self::Normal, Self::Tangent, Self::Openness, Self::Heading];
 
     /// Format in memory.
     pub(crate) fn format(self) -> wgpu::VertexFormat {
         match self {
-            Self::Position | Self::Lit | Self::Normal => wgpu::VertexFormat::Float32x3,
+            Self::Position | Self::Lit | Self::Normal | Self::Heading => wgpu::VertexFormat::Float32x3,
             Self::Uv0 | Self::Uv1 => wgpu::VertexFormat::Float32x2,
             Self::Color | Self::Tangent => wgpu::VertexFormat::Float32x4,
             Self::Openness => wgpu::VertexFormat::Float32,
@@ -54,13 +56,14 @@ pub(crate) struct Geometry {
 }
 
 impl Geometry {
-    /// Uploads what the file holds; normals, tangents and openness only where `shines`. `lit` are the vertices' colours.
-    /// `rows` are those of gloss, where vertices that shine have any.
+    /// Uploads what the file holds; normals, tangents and openness only where `shaped`. `lit` are the vertices' colours, `heading` where they
+    /// come from, if that is asked for. `rows` are those of gloss, where vertices that shine have any.
     pub(crate) fn new(
         gpu: &Gpu,
         prt: &Prt,
         lit: wgpu::Buffer,
-        shines: bool,
+        heading: Option<wgpu::Buffer>,
+        shaped: bool,
         rows: Option<wgpu::Buffer>,
     ) -> Result<Self, Error> {
         let geometry = &prt.geometry;
@@ -71,10 +74,14 @@ impl Geometry {
             stream(gpu, "uv1", &geometry.uv1, [0.0; 4])?,
             stream(gpu, "colors", &geometry.colors, [1.0; 4])?,
         ];
-        if shines {
+        if shaped {
             streams.push(stream(gpu, "normals", &geometry.normals, [0.0; 4])?);
             streams.push(stream(gpu, "tangents", &geometry.tangents, [0.0; 4])?);
             streams.push(stream(gpu, "openness", &prt.transfer.openness, [1.0; 4])?);
+            streams.push(match heading {
+                Some(buffer) => Stream { buffer, step: wgpu::VertexStepMode::Vertex },
+                None => stream::<[f32; 3]>(gpu, "headings", &[], [0.0; 4])?,
+            });
             streams.extend(rows.map(|buffer| Stream { buffer, step: wgpu::VertexStepMode::Vertex }));
         }
         let triangles = buffer(gpu, "triangles", bytemuck::cast_slice(&geometry.triangles), wgpu::BufferUsages::INDEX)?;

@@ -23,6 +23,8 @@ pub(crate) struct Variant {
     pub(crate) base_textured: bool,
     pub(crate) metallic_roughness_textured: bool,
     pub(crate) normal_textured: bool,
+    /// A normal map bends the light of the vertices.
+    pub(crate) bends_light: bool,
     pub(crate) glow_textured: bool,
     /// Lit by a light map in this basis, else by the vertices.
     pub(crate) basis: Option<Basis>,
@@ -38,6 +40,7 @@ impl Variant {
     /// What a material of a file with or without tangents calls for where no light map lies upon it.
     pub(crate) fn of(material: &Material, has_tangents: bool) -> Self {
         let fades = material.alpha == AlphaMode::Blend;
+        let bends = has_tangents && material.normal_texture.is_some() && !material.unlit;
         Self {
             shiny: material.specular && !material.unlit,
             masked: matches!(material.alpha, AlphaMode::Mask(_)),
@@ -46,7 +49,8 @@ impl Variant {
             unlit: material.unlit,
             base_textured: material.base_color_texture.is_some(),
             metallic_roughness_textured: material.metallic_roughness_texture.is_some(),
-            normal_textured: material.specular && has_tangents && material.normal_texture.is_some(),
+            normal_textured: bends,
+            bends_light: bends,
             glow_textured: material.emissive_texture.is_some(),
             basis: None,
             gloss: None,
@@ -55,7 +59,12 @@ impl Variant {
         }
     }
 
-    /// The pipeline constants of surface.wgsl and sheet.wgsl.
+    /// Whether the normals of vertices are read.
+    pub(crate) fn is_shaped(self) -> bool {
+        self.shiny || self.bends_light
+    }
+
+    /// The pipeline constants of surface.wgsl, bend.wgsl and sheet.wgsl.
     pub(crate) fn constants(self) -> Vec<(&'static str, f64)> {
         let functions = self.basis.map(|basis| ("functions", basis.count() as f64));
         let switches = [
@@ -69,10 +78,12 @@ impl Variant {
             ("unlit", self.unlit),
         ]
         .map(|(name, on)| (name, f64::from(u8::from(on))));
+        // Only surfaces with normals know it.
+        let bends = (self.is_shaped()).then_some(("bends_light", f64::from(u8::from(self.bends_light))));
         let product = |way| way != GlossWay::Cache;
         let products = matches!(self.gloss, Some(GlossKind::Texels(way) | GlossKind::Vertices(way)) if product(way));
         let bounced = products.then_some(("bounced", f64::from(u8::from(self.bounced))));
-        switches.into_iter().chain(functions).chain(bounced).collect()
+        switches.into_iter().chain(bends).chain(functions).chain(bounced).collect()
     }
 }
 
@@ -80,16 +91,21 @@ impl Variant {
 #[derive(Debug)]
 pub(crate) struct BoundMaterial {
     variant: Variant,
-    /// Whether a normal map bends the light of light maps.
-    bends: bool,
     pub(crate) bindings: wgpu::BindGroup,
 }
 
 impl BoundMaterial {
-    /// The variant of a surface with this material, lit by a map in `basis` or by its vertices.
-    pub(crate) fn variant(&self, basis: Option<Basis>) -> Variant {
-        let normal_textured = self.variant.normal_textured || basis.is_some() && self.bends;
-        Variant { basis, normal_textured, ..self.variant }
+    /// The variant of a surface with this material, lit by a map in `basis`, by a transfer texture (`texels`) or by its vertices.
+    pub(crate) fn variant(&self, basis: Option<Basis>, texels: bool) -> Variant {
+        let bends_light = self.variant.bends_light && basis.is_none() && !texels;
+        // A transfer texture is bent already.
+        let normal_textured = self.variant.normal_textured && (self.variant.shiny || !texels);
+        Variant { basis, bends_light, normal_textured, ..self.variant }
+    }
+
+    /// Whether it mirrors the light probe.
+    pub(crate) fn is_shiny(&self) -> bool {
+        self.variant.shiny
     }
 
     /// Whether it is drawn over what lies behind.
@@ -101,19 +117,7 @@ impl BoundMaterial {
 /// Uploads the materials and those textures that they show.
 pub(crate) fn upload(gpu: &Gpu, prt: &Prt, layout: &wgpu::BindGroupLayout) -> Result<Vec<BoundMaterial>, Error> {
     let mut textures = Textures::new(gpu)?;
-    let mapped = mapped(prt);
-    let materials = prt.materials.iter().zip(mapped);
-    materials.map(|(material, mapped)| bind(gpu, prt, layout, &mut textures, material, mapped)).collect()
-}
-
-/// Of each material whether a mesh shows it under a light map.
-fn mapped(prt: &Prt) -> Vec<bool> {
-    let mut mapped = vec![false; prt.materials.len()];
-    let sheets = prt.maps.iter().flat_map(|maps| &maps.sheet_of_mesh);
-    for (mesh, _) in prt.meshes.iter().zip(sheets).filter(|(_, sheet)| sheet.is_some()) {
-        mapped[mesh.material as usize] = true;
-    }
-    mapped
+    prt.materials.iter().map(|material| bind(gpu, prt, layout, &mut textures, material)).collect()
 }
 
 /// The layout of a material's bindings (group 1 of surface.wgsl).
@@ -148,15 +152,13 @@ fn bind(
     layout: &wgpu::BindGroupLayout,
     textures: &mut Textures,
     material: &Material,
-    mapped: bool,
 ) -> Result<BoundMaterial, Error> {
     let has_tangents = !prt.geometry.tangents.is_empty();
     let variant = Variant::of(material, has_tangents);
-    let bends = mapped && has_tangents && material.normal_texture.is_some();
     let slots = [
         (material.base_color_texture, Encoding::Srgb),
         (material.metallic_roughness_texture, Encoding::Linear),
-        (material.normal_texture.filter(|_| variant.normal_textured || bends), Encoding::Linear),
+        (material.normal_texture.filter(|_| variant.normal_textured), Encoding::Linear),
         (material.emissive_texture, Encoding::Srgb),
     ]
     .map(|(slot, encoding)| (slot.map(|slot| slot.texture), encoding));
@@ -175,7 +177,7 @@ fn bind(
         layout,
         entries: &entries.collect::<Vec<_>>(),
     });
-    Ok(BoundMaterial { variant, bends, bindings })
+    Ok(BoundMaterial { variant, bindings })
 }
 
 fn numbers(material: &Material) -> gpu_data::Material {
@@ -249,8 +251,10 @@ mod tests {
         assert_eq!(parts(&Material { transmission: 0.5, ..matt() }, true), ["sorted", "blended"]);
         assert_eq!(parts(&Material { emissive_texture: slot, ..matt() }, true), ["glow_textured"]);
         assert_eq!(parts(&Material { unlit: true, specular: true, ..matt() }, true), ["unlit"]);
-        assert!(parts(&bumpy, true).is_empty(), "a normal map bends nothing where nothing shines and no map lies");
-        assert_eq!(parts(&Material { normal_texture: slot, ..shiny.clone() }, true), ["shiny", "normal_textured"]);
+        assert_eq!(parts(&bumpy, true), ["normal_textured", "bends_light"]);
+        assert!(parts(&bumpy, false).is_empty(), "a normal map bends nothing without tangents");
+        let both = Material { normal_texture: slot, ..shiny.clone() };
+        assert_eq!(parts(&both, true), ["shiny", "normal_textured", "bends_light"]);
         assert_eq!(parts(&Material { normal_texture: slot, ..shiny }, false), ["shiny"], "nor without tangents");
     }
 }

@@ -25,6 +25,8 @@ pub struct Renderer {
     /// The rotation that the vertices are lit for.
     lit_for: Option<Quat>,
     relight: Relighting,
+    /// Where the light of vertices comes from; only where a normal map bends it.
+    heading: Option<Relight>,
     near: f32,
     view: wgpu::Buffer,
     view_bindings: wgpu::BindGroup,
@@ -104,6 +106,11 @@ impl Renderer {
                 Relighting::Exact(Relight::new(gpu, &prt.transfer, limit)?)
             }
         };
+        let heading = prt.bends_vertices().then(|| {
+            let limit = gpu.limits.max_storage_buffer_binding_size;
+            Relight::new(gpu, &prt.transfer.grey(), limit)
+        });
+        let heading = heading.transpose()?;
         let layouts = Layouts {
             view: view_layout(device),
             material: material::layout(device),
@@ -112,6 +119,7 @@ impl Renderer {
         let reflected = layouts.reflection.as_ref().map(|layout| reflection::upload(gpu, environment, layout));
         let (view, view_bindings) = view_buffer(device, &layouts.view);
         let sky = Sky::new(gpu, environment, &layouts.view, format)?;
+        let lit = (relight.lit().clone(), heading.as_ref().map(|heading| heading.lit().clone()));
         Ok(Self {
             light: sh_math::project(prt.light_bands().unwrap_or(bands), environment.samples()),
             bands,
@@ -119,10 +127,11 @@ impl Renderer {
             near: view::near_plane(prt),
             view,
             view_bindings,
-            surfaces: Surfaces::new(gpu, prt, layouts, reflected.transpose()?, relight.lit().clone(), format)?,
+            surfaces: Surfaces::new(gpu, prt, layouts, reflected.transpose()?, lit, format)?,
             sky,
             finish: Finish::new(gpu),
             relight,
+            heading,
             targets: None,
             format,
             gpu: gpu.clone(),
@@ -215,6 +224,9 @@ impl Renderer {
         if self.lit_for != Some(frame.rotation) {
             let light = self.light.rotated(frame.rotation.normalize()).with_bands(self.bands);
             self.relight.record(&gpu, &mut encoder, &light);
+            if let Some(heading) = &self.heading {
+                heading.record(&gpu, &mut encoder, &sh_math::heading(&light));
+            }
             self.lit_for = Some(frame.rotation);
         }
         self.surfaces.light_maps(&gpu, &mut encoder, &self.light, frame.rotation, basis)?;

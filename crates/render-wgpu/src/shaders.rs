@@ -14,7 +14,7 @@ macro_rules! surfaces {
             shader!(concat!("diffuse, ", $name), "view.wgsl", "surface.wgsl", $($light),+),
             shader!(
                 concat!("shiny, ", $name),
-                "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl", "mirror.wgsl", $($light),+
+                "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "bend.wgsl", "shine.wgsl", "mirror.wgsl", $($light),+
             ),
         ]
     };
@@ -74,6 +74,10 @@ pub(crate) fn surface(shiny: bool, basis: Option<Basis>) -> Shader {
     SURFACES[family][usize::from(shiny)].clone()
 }
 
+/// Matt surfaces lit by their vertices, whose light a normal map bends.
+pub(crate) const BENT: Shader =
+    shader!("bent, lit at vertices", "view.wgsl", "surface.wgsl", "bend.wgsl", "vertex_light.wgsl", "bent.wgsl");
+
 /// Surfaces with gloss or transfer textures, for files of so many bands of gloss.
 pub(crate) fn glossy(kind: GlossKind, shiny: bool, bands: Option<Bands>) -> Shader {
     let plain = match kind {
@@ -97,7 +101,7 @@ macro_rules! texels {
     ($name:literal, $($way:literal),+) => {
         shader!(
             concat!("glossy texels, ", $name),
-            "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl", "gloss_frame.wgsl", "transfer.wgsl",
+            "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "bend.wgsl", "shine.wgsl", "gloss_frame.wgsl", "transfer.wgsl",
             "gloss.wgsl", "gloss_texels.wgsl", $($way),+
         )
     };
@@ -108,7 +112,7 @@ macro_rules! vertices {
     ($name:literal, $($way:literal),+) => {
         shader!(
             concat!("glossy vertices, ", $name),
-            "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "shine.wgsl", "vertex_light.wgsl", "gloss_frame.wgsl",
+            "view.wgsl", "equirect.wgsl", "brdf.wgsl", "surface.wgsl", "bend.wgsl", "shine.wgsl", "vertex_light.wgsl", "gloss_frame.wgsl",
             "gloss.wgsl", "gloss_vertices.wgsl", $($way),+
         )
     };
@@ -124,7 +128,7 @@ const VERTICES_TPFL: Shader = vertices!("matrix of the light", "gloss_vertices_p
 /// Every module of the renderer, for the tests that need no GPU.
 #[cfg(test)]
 pub(crate) fn all() -> Vec<Shader> {
-    let others = [RELIGHT, SHEET_FILL, GLOSS_ROWS, SKY, RESOLVE, BLOOM, DISPLAY];
+    let others = [BENT, RELIGHT, SHEET_FILL, GLOSS_ROWS, SKY, RESOLVE, BLOOM, DISPLAY];
     let ways = GlossWay::ALL.into_iter().flat_map(|way| [GlossKind::Texels(way), GlossKind::Vertices(way)]);
     let kinds: Vec<GlossKind> = ways.collect();
     let glossy = (1..=8)

@@ -62,7 +62,7 @@ impl Surfaces {
         prt: &Prt,
         layouts: Layouts,
         reflection: Option<wgpu::BindGroup>,
-        lit: wgpu::Buffer,
+        (lit, heading): (wgpu::Buffer, Option<wgpu::Buffer>),
         format: wgpu::TextureFormat,
     ) -> Result<Self, Error> {
         let materials = material::upload(gpu, prt, &layouts.material)?;
@@ -79,7 +79,8 @@ impl Surfaces {
         let sheets = Sheets::new(gpu, prt)?;
         let gloss = Gloss::new(gpu, prt)?;
         let rows = gloss.as_ref().and_then(|gloss| gloss.vertices.as_ref()).map(|vertices| vertices.row_of.clone());
-        let geometry = Geometry::new(gpu, prt, lit, reflection.is_some(), rows)?;
+        let shaped = reflection.is_some() || heading.is_some();
+        let geometry = Geometry::new(gpu, prt, lit, heading, shaped, rows)?;
         let basis = sheets.as_ref().map(|sheets| sheets.maps().basis);
         let (pipelines, depth_pipelines) = (HashMap::new(), HashMap::new());
         let mut surfaces = Self {
@@ -121,8 +122,10 @@ impl Surfaces {
     fn variant(&self, draw: &Draw) -> Variant {
         let maps = self.sheets.as_ref().zip(draw.sheet);
         let basis = maps.zip(self.basis).map(|((sheets, sheet), asked)| sheets.basis(sheet, asked));
-        let plain = self.materials[draw.material as usize].variant(basis);
-        let gloss = self.gloss.as_ref().and_then(|gloss| gloss.kind(draw, plain.shiny));
+        let material = &self.materials[draw.material as usize];
+        let gloss = self.gloss.as_ref().and_then(|gloss| gloss.kind(draw, material.is_shiny()));
+        let texels = matches!(gloss, Some(GlossKind::Diffuse | GlossKind::Texels(_)));
+        let plain = material.variant(basis, texels);
         let bounced = self.gloss.as_ref().is_some_and(Gloss::is_bounced);
         Variant { gloss, bounced, early: self.early && !plain.blended, ..plain }
     }
@@ -233,11 +236,13 @@ impl Surfaces {
     fn pipeline(&self, gpu: &Gpu, variant: Variant, pass: Pass) -> wgpu::RenderPipeline {
         let shader = match variant.gloss {
             Some(kind) => shaders::glossy(kind, variant.shiny, self.gloss.as_ref().and_then(Gloss::bands)),
+            None if variant.bends_light && !variant.shiny => shaders::BENT,
             None => shaders::surface(variant.shiny, variant.basis),
         };
         let entries = match (variant.gloss, variant.shiny) {
             (Some(GlossKind::Vertices(_)), _) => ["place_glossy", "draw_glossy", "cut_glossy"],
             (_, true) => ["place_shiny", "draw_shiny", "cut_shiny"],
+            (None, false) if variant.bends_light => ["place_shiny", "draw_bent", "cut_shiny"],
             (_, false) => ["place_diffuse", "draw_diffuse", "cut_diffuse"],
         };
         let [vertex_entry, draw_entry, cut_entry] = entries;
@@ -327,7 +332,7 @@ pub(crate) fn blends(prt: &Prt) -> bool {
 }
 
 fn attributes(variant: Variant) -> impl Iterator<Item = Attribute> {
-    let more: &[Attribute] = if variant.shiny { &Attribute::SHINY } else { &[] };
+    let more: &[Attribute] = if variant.is_shaped() { &Attribute::SHINY } else { &[] };
     let rows = matches!(variant.gloss, Some(GlossKind::Vertices(_))).then_some(Attribute::Row);
     Attribute::DIFFUSE.into_iter().chain(more.iter().copied()).chain(rows)
 }

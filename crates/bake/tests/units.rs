@@ -1,0 +1,102 @@
+//! The unit that a scene is modelled in changes nothing: no length counts by itself.
+
+mod support;
+
+use bake::{Extras, MapSettings, SheetSettings, TextureSettings};
+use coeff_io::{Bounces, Effect, Effects, Encoding, Prt, Quality, Settings};
+use scene::lightmap::{ObjectOptions, objects};
+use scene::{Material, Scene};
+use sh_math::hemisphere::Basis;
+
+/// A small metal ball over a plane, in another unit.
+fn scene(unit: f32) -> Scene {
+    let mut scene = scene::builtin("sphere-on-plane").expect("a scene of its own");
+    let metal = Material { metallic: 1.0, roughness: 0.3, ..scene.materials[0].clone() };
+    scene.materials.push(metal);
+    let ball = (0..scene.meshes.len()).max_by_key(|&m| scene.meshes[m].triangles.len()).expect("meshes");
+    scene.meshes[ball].material = scene.materials.len() as u32 - 1;
+    for mesh in &mut scene.meshes {
+        mesh.positions.iter_mut().for_each(|position| *position *= unit);
+    }
+    scene
+}
+
+fn settings() -> Settings {
+    Settings {
+        bands: 3,
+        quality: Quality::Rays(16),
+        bounces: Bounces::Fixed(1),
+        effects: Effects::Only(vec![
+            Effect::Visibility,
+            Effect::Interreflection,
+            Effect::Color,
+            Effect::Specular,
+            Effect::Glossy,
+        ]),
+        ..bake::settings::standard()
+    }
+}
+
+const OBJECTS: ObjectOptions = ObjectOptions { texels: 64, padding: 2, unwrap: true };
+
+fn sheets(scene: &mut Scene) -> Vec<SheetSettings> {
+    let all: Vec<usize> = (0..scene.meshes.len()).collect();
+    let found = objects(scene, &all, &OBJECTS, &|_, _, _| {}).expect("it unwraps");
+    let sheet = |object: scene::lightmap::ObjectSheet| SheetSettings {
+        meshes: vec![object.mesh],
+        width: object.width,
+        height: object.height,
+        directional: false,
+    };
+    found.into_iter().map(sheet).collect()
+}
+
+fn textured(unit: f32) -> (Vec<SheetSettings>, Prt) {
+    let mut scene = scene(unit);
+    let sheets = sheets(&mut scene);
+    let textures =
+        TextureSettings { sheets: sheets.clone(), dilation: 1, levels: false, bent: false, stitch: false };
+    let extras = Extras { textures: Some(textures), ..Extras::default() };
+    (sheets, bake::bake_with(&scene, &settings(), &extras, &|_| std::ops::ControlFlow::Continue(())).unwrap())
+}
+
+fn mapped(unit: f32) -> Prt {
+    let mut scene = scene(unit);
+    let maps = MapSettings {
+        basis: Basis::ModifiedH1,
+        sheets: sheets(&mut scene),
+        stitch: false,
+        dilation: 1,
+        encoding: Encoding::F32,
+    };
+    let extras = Extras { maps: Some(maps), ..Extras::default() };
+    bake::bake_with(&scene, &settings(), &extras, &|_| std::ops::ControlFlow::Continue(())).unwrap()
+}
+
+/// Powers of two are exact: every number of the file but the lengths is the same to the bit.
+#[test]
+fn powers_of_two_change_no_bit() {
+    let (sheets, metres) = textured(1.0);
+    let maps = mapped(1.0);
+    for unit in [128.0, 1.0 / 128.0] {
+        let (own, prt) = textured(unit);
+        assert_eq!(own, sheets, "as many texels in units of 1 / {unit}");
+        assert!(prt.transfer.values == metres.transfer.values, "transfer in units of 1 / {unit}");
+        assert_eq!(prt.achieved.gloss.map(|gloss| gloss.texels), metres.achieved.gloss.map(|gloss| gloss.texels));
+        assert!(mapped(unit).maps == maps.maps, "light maps in units of 1 / {unit}");
+    }
+    assert!(maps.transfer.values.iter().any(|value| *value != 0.0), "can fail: something is there");
+}
+
+/// Centimetres round otherwise than metres: as many texels, and the same light but for what single rays change.
+#[test]
+fn centimetres_are_as_good_as_metres() {
+    let (sheets, metres) = textured(1.0);
+    let (own, prt) = textured(100.0);
+    assert_eq!(own, sheets);
+    let sum = |prt: &Prt| prt.transfer.values.iter().step_by(9).sum::<f32>();
+    let off = sum(&prt) / sum(&metres) - 1.0;
+    assert!(off.abs() < 0.01, "{off}");
+    let count = |prt: &Prt| prt.transfer.values.len() as f32;
+    assert!((count(&prt) / count(&metres) - 1.0).abs() < 0.02);
+}
