@@ -131,7 +131,7 @@ impl Prt {
         let is_on_sheet = |mesh: usize| {
             [of_maps, of_textures].into_iter().flatten().any(|sheets| sheets.get(mesh).copied().flatten().is_some())
         };
-        let bends = |mesh: &Mesh| {
+        let bends = |mesh: &crate::Mesh| {
             let material = &self.materials[mesh.material as usize];
             material.normal_texture.is_some() && !material.unlit
         };

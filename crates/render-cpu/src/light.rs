@@ -25,7 +25,7 @@ pub fn vertex_radiance(transfer: &Transfer, light: &[[f32; 3]]) -> Vec<Vec3> {
 
 /// Luminance of what each vertex takes, times the direction that it comes from; `heading` is that of the light. Of three channels the mean
 /// is taken: they differ by what colours add to bounces.
-pub fn vertex_heading(transfer: &Transfer, heading: &[[f32; 3]]) -> Vec<Vec3> {
+pub(crate) fn vertex_heading(transfer: &Transfer, heading: &[[f32; 3]]) -> Vec<Vec3> {
     let channels = transfer.channels as usize;
     let share = 1.0 / channels as f32;
     let rows = transfer.values.par_chunks((heading.len() * channels).max(1));

@@ -6,6 +6,8 @@ override bends_light: bool = false;
 
 // What keeps the answer of a lamp that grazes the surface finite.
 const GRAZING: f32 = 0.05;
+// Cosine of a lamp above which it is believed.
+const BELIEVED: f32 = 0.25;
 
 struct Shiny {
     @invariant @builtin(position) clip: vec4<f32>,
@@ -65,9 +67,10 @@ fn bent_light(light: vec3<f32>, heading: vec3<f32>, plain: vec3<f32>, bent: vec3
     let spread = sky_share(mean, plain);
     let lamp = mean - plain * (2.0 / 3.0 * spread);
     let towards = normalize(select(plain, lamp, length(lamp) > 1e-6));
+    let share = (1.0 - spread) * saturate(dot(towards, plain) / BELIEVED);
     let of_lamp = (max(dot(towards, bent), 0.0) + GRAZING) / (max(dot(towards, plain), 0.0) + GRAZING);
     let of_sky = 0.5 * (1.0 + dot(plain, bent));
-    return light * (spread * of_sky + (1.0 - spread) * of_lamp);
+    return light * ((1.0 - share) * of_sky + share * of_lamp);
 }
 
 // The share of the sky: |mean - 2/3 s plain| = 1 - s.

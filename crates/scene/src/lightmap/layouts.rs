@@ -9,6 +9,8 @@ use crate::Scene;
 const SMALLEST: u32 = 16;
 /// Most sheets that hold one mesh each; charts of more meshes are better packed together.
 const MOST_PAGES: usize = 16;
+/// Times as many texels along a side as its area asks for that a sheet may have for the sake of small charts.
+const MOST_GROWTH: u32 = 2;
 /// Share of a mesh that may have no area in its sheet: triangles too thin for a place there.
 const LOST: f64 = 1e-3;
 
@@ -61,7 +63,7 @@ pub fn layouts(scene: &Scene, meshes: &[usize], texels: u32, most: u32) -> Layou
     out
 }
 
-/// The side at which the meshes of a sheet are lit as they lie, `side` or more but `most` at most; else what stands in the way.
+/// The side at which the meshes of a sheet are lit as they lie, `side` or more but neither twice as much nor `most`; else what stands in the way.
 fn fitted(scene: &Scene, sheet: &[usize], side: u32, most: u32) -> Result<u32, Fault> {
     let lost: f64 = sheet.iter().map(|&mesh| LOST * area(scene, &[mesh])).sum();
     let found = faults(scene, sheet);
@@ -70,6 +72,7 @@ fn fitted(scene: &Scene, sheet: &[usize], side: u32, most: u32) -> Result<u32, F
     if let Some(fault) = found.into_iter().find(|fault| fault.kind != FaultKind::Flat || flat > lost) {
         return Err(fault);
     }
+    let most = most.min(MOST_GROWTH * side);
     let grown = f64::from(side) * growth(scene, sheet, [side; 2]).max(1.0);
     let mut side = (grown.ceil() as u32).min(most);
     loop {

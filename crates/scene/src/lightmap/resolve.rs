@@ -42,11 +42,6 @@ pub(super) fn too_small(sizes: &[ChartSize]) -> Vec<ChartSize> {
     wanting(sizes).into_iter().filter(|chart| chart.texels < FEWEST).collect()
 }
 
-/// By how much the sides must grow for charts of these sizes.
-pub(super) fn growth_of(sizes: &[ChartSize]) -> f64 {
-    wanting(sizes).iter().map(ChartSize::growth).fold(0.0, f64::max)
-}
-
 /// Sizes of all charts of some meshes in a sheet of so many texels.
 pub(super) fn sizes(scene: &Scene, sheet: &[usize], texels: f64) -> Vec<ChartSize> {
     let of_mesh = |&index: &usize| {

@@ -1,11 +1,9 @@
 //! Light-map coordinates made by the program.
 
 use super::fault::{corners, doubled_area};
-use super::resolve::{ChartSize, growth_of};
 use crate::vertices::select;
 use crate::{Material, Mesh, Scene};
 use glam::Vec2;
-use std::collections::BTreeMap;
 
 /// Most texels along a side of a sheet.
 const LARGEST_SIDE: u32 = 16_384;
@@ -102,71 +100,48 @@ pub fn unwrap(
     options: &Unwrap,
     progress: &(dyn Fn(&'static str, u64, u64) + Sync),
 ) -> Result<Atlas, UnwrapError> {
-    let atlas = generate(scene, sheet, &[], options, progress)?;
+    check(scene, sheet, options)?;
+    let (positions, _) = inputs_of(scene, sheet, &[]);
+    let inputs: Vec<uvunwrap::MeshInput<'_>> = sheet
+        .iter()
+        .zip(&positions)
+        .map(|(&m, positions)| uvunwrap::MeshInput::new(positions, scene.meshes[m].triangles.as_flattened()))
+        .collect();
+    let atlas = library(&inputs, options, progress)?;
     if atlas.page_count > 1 {
         return Err(UnwrapError::TooSmall { charts: atlas.chart_count, side: atlas.width });
     }
-    Ok(apply(scene, sheet, &atlas))
-}
-
-/// The same into a sheet that grows until each chart has four texels, but for chips; of the meshes in `kept` the charts of their own
-/// coordinates are kept where they are sound, and moved, turned and scaled.
-///
-/// # Errors
-/// As [`unwrap`]; [`UnwrapError::TooCoarse`] where the sheet would have more than `most` texels along a side. The scene is then as it was.
-pub fn unwrap_resolved(
-    scene: &mut Scene,
-    sheet: &[usize],
-    kept: &[usize],
-    options: &Unwrap,
-    most: u32,
-    progress: &(dyn Fn(&'static str, u64, u64) + Sync),
-) -> Result<Atlas, UnwrapError> {
-    let mut atlas = generate(scene, sheet, kept, options, progress)?;
-    let sizes = chart_sizes(scene, sheet, &atlas);
-    let growth = growth_of(&sizes).max(1.0);
-    if growth > 1.0 || atlas.page_count > 1 {
-        let coarse = |needed| UnwrapError::TooCoarse { charts: atlas.chart_count, needed, side: most };
-        // Sheets that are far too large are not made to be refused.
-        let foreseen = foreseen_side(&sizes, growth, options.padding);
-        if foreseen > 1.5 * f64::from(most) {
-            return Err(coarse(foreseen.ceil() as u32));
-        }
-        // A little more, since the library rounds.
-        let density = Density::PerMetre((f64::from(atlas.texels_per_unit) * growth * 1.01) as f32);
-        let grown = generate(scene, sheet, kept, &Unwrap { density, ..*options }, progress)?;
-        let side = grown.width.max(grown.height);
-        if side > most {
-            return Err(coarse(side));
-        }
-        atlas = grown;
+    for (&m, unwrapped) in sheet.iter().zip(&atlas.meshes) {
+        take_over(&mut scene.meshes[m], unwrapped);
     }
-    Ok(apply(scene, sheet, &atlas))
+    Ok(Atlas {
+        width: atlas.width,
+        height: atlas.height,
+        texels_per_metre: atlas.texels_per_unit,
+        charts: atlas.chart_count,
+        filled: atlas.utilization,
+        lost: sheet.iter().map(|&m| lost(&scene.meshes[m])).sum(),
+    })
 }
 
-/// Charts and their places, by the library; the scene stays as it is.
-fn generate(
+/// Positions of the meshes, and the coordinates of those whose charts are kept, as the library takes them.
+#[expect(clippy::type_complexity)]
+pub(super) fn inputs_of(
     scene: &Scene,
     sheet: &[usize],
     kept: &[usize],
+) -> (Vec<Vec<[f32; 3]>>, Vec<Option<Vec<[f32; 2]>>>) {
+    let positions = sheet.iter().map(|&m| scene.meshes[m].positions.iter().map(|p| p.to_array()).collect()).collect();
+    let own = |m: &usize| kept.contains(m).then(|| scene.meshes[*m].uv1.iter().map(|uv| uv.to_array()).collect());
+    (positions, sheet.iter().map(own).collect())
+}
+
+/// Charts and their places, by the library.
+pub(super) fn library(
+    inputs: &[uvunwrap::MeshInput<'_>],
     options: &Unwrap,
     progress: &(dyn Fn(&'static str, u64, u64) + Sync),
 ) -> Result<uvunwrap::Atlas, UnwrapError> {
-    check(scene, sheet, options)?;
-    let positions: Vec<Vec<[f32; 3]>> =
-        sheet.iter().map(|&m| scene.meshes[m].positions.iter().map(|p| p.to_array()).collect()).collect();
-    let own: Vec<Option<Vec<[f32; 2]>>> = sheet
-        .iter()
-        .map(|m| kept.contains(m).then(|| scene.meshes[*m].uv1.iter().map(|uv| uv.to_array()).collect()))
-        .collect();
-    let inputs: Vec<uvunwrap::MeshInput<'_>> = sheet
-        .iter()
-        .zip(positions.iter().zip(&own))
-        .map(|(&m, (positions, own))| uvunwrap::MeshInput {
-            existing_uvs: own.as_deref(),
-            ..uvunwrap::MeshInput::new(positions, scene.meshes[m].triangles.as_flattened())
-        })
-        .collect();
     let density = match options.density {
         Density::PerMetre(texels_per_unit) => uvunwrap::Density::Fixed { texels_per_unit, page_size: None },
         Density::Side(page_size) => uvunwrap::Density::Auto { page_size },
@@ -180,52 +155,13 @@ fn generate(
         progress(stage, step.done as u64, step.total.unwrap_or(step.done) as u64);
         true
     };
-    let atlas = uvunwrap::generate_with_progress(&inputs, &library, told)
+    let atlas = uvunwrap::generate_with_progress(inputs, &library, told)
         .map_err(|error| UnwrapError::Refused(error.to_string()))?;
     if atlas.width.max(atlas.height) > LARGEST_SIDE { Err(UnwrapError::TooLarge) } else { Ok(atlas) }
 }
 
-/// Texels along the side of a sheet for charts whose sides grow so, each with free texels around it, filled to four fifths.
-fn foreseen_side(sizes: &[ChartSize], growth: f64, padding: u32) -> f64 {
-    let with_padding = |chart: &ChartSize| chart.texels.sqrt() * growth + 2.0 * f64::from(padding);
-    (sizes.iter().map(|chart| with_padding(chart).powi(2)).sum::<f64>() / 0.8).sqrt()
-}
-
-/// Gives the meshes the coordinates that were made.
-fn apply(scene: &mut Scene, sheet: &[usize], atlas: &uvunwrap::Atlas) -> Atlas {
-    for (&m, unwrapped) in sheet.iter().zip(&atlas.meshes) {
-        take_over(&mut scene.meshes[m], unwrapped);
-    }
-    Atlas {
-        width: atlas.width,
-        height: atlas.height,
-        texels_per_metre: atlas.texels_per_unit,
-        charts: atlas.chart_count,
-        filled: atlas.utilization,
-        lost: sheet.iter().map(|&m| lost(&scene.meshes[m])).sum(),
-    }
-}
-
-/// Sizes of the charts that were made.
-fn chart_sizes(scene: &Scene, sheet: &[usize], atlas: &uvunwrap::Atlas) -> Vec<ChartSize> {
-    let texels = f64::from(atlas.width) * f64::from(atlas.height);
-    let mut sizes: BTreeMap<(usize, u32), ChartSize> = BTreeMap::new();
-    for (&mesh, unwrapped) in sheet.iter().zip(&atlas.meshes) {
-        for (triangle, corners) in unwrapped.indices.as_chunks::<3>().0.iter().enumerate() {
-            let corners = corners.map(|v| &unwrapped.vertices[v as usize]);
-            let Some(chart) = corners[0].chart else { continue };
-            let placed = corners.map(|vertex| Vec2::from(vertex.uv).as_dvec2());
-            let none = ChartSize { mesh, triangle, area: 0.0, texels: 0.0 };
-            let size = sizes.entry((mesh, chart)).or_insert(none);
-            size.area += scene.meshes[mesh].area(triangle);
-            size.texels += 0.5 * doubled_area(placed).abs() * texels;
-        }
-    }
-    sizes.into_values().collect()
-}
-
 /// Refuses a density that would fill the memory before the library tries.
-fn check(scene: &Scene, sheet: &[usize], options: &Unwrap) -> Result<(), UnwrapError> {
+pub(super) fn check(scene: &Scene, sheet: &[usize], options: &Unwrap) -> Result<(), UnwrapError> {
     let area = |&m: &usize| {
         let mesh = &scene.meshes[m];
         (0..mesh.triangles.len()).map(|t| mesh.area(t)).sum::<f64>()
@@ -242,7 +178,7 @@ fn check(scene: &Scene, sheet: &[usize], options: &Unwrap) -> Result<(), UnwrapE
 }
 
 /// Triangles whose corners lie upon each other or on a line in the sheet.
-fn lost(mesh: &Mesh) -> usize {
+pub(super) fn lost(mesh: &Mesh) -> usize {
     (0..mesh.triangles.len()).filter(|&t| doubled_area(corners(mesh, t)) == 0.0).count()
 }
 
