@@ -54,8 +54,7 @@ fn sheets(scene: &mut Scene) -> Vec<SheetSettings> {
 fn textured(unit: f32) -> (Vec<SheetSettings>, Prt) {
     let mut scene = scene(unit);
     let sheets = sheets(&mut scene);
-    let textures =
-        TextureSettings { sheets: sheets.clone(), dilation: 1, levels: false, bent: false, stitch: false };
+    let textures = TextureSettings { sheets: sheets.clone(), dilation: 1, levels: false, bent: false, stitch: false };
     let extras = Extras { textures: Some(textures), ..Extras::default() };
     (sheets, bake::bake_with(&scene, &settings(), &extras, &|_| std::ops::ControlFlow::Continue(())).unwrap())
 }
