@@ -124,13 +124,13 @@ pub fn unwrap(
     })
 }
 
-/// Positions of the meshes, and the coordinates of those whose charts are kept, as the library takes them.
-#[expect(clippy::type_complexity)]
-pub(super) fn inputs_of(
-    scene: &Scene,
-    sheet: &[usize],
-    kept: &[usize],
-) -> (Vec<Vec<[f32; 3]>>, Vec<Option<Vec<[f32; 2]>>>) {
+/// Positions of the vertices of each mesh.
+pub(super) type Positions = Vec<Vec<[f32; 3]>>;
+/// Own coordinates of each mesh whose charts are kept.
+pub(super) type OwnCharts = Vec<Option<Vec<[f32; 2]>>>;
+
+/// Meshes as the library takes them.
+pub(super) fn inputs_of(scene: &Scene, sheet: &[usize], kept: &[usize]) -> (Positions, OwnCharts) {
     let positions = sheet.iter().map(|&m| scene.meshes[m].positions.iter().map(|p| p.to_array()).collect()).collect();
     let own = |m: &usize| kept.contains(m).then(|| scene.meshes[*m].uv1.iter().map(|uv| uv.to_array()).collect());
     (positions, sheet.iter().map(own).collect())
