@@ -288,8 +288,8 @@ impl Gatherer<'_> {
             return Blockers { rays, ..Blockers::default() };
         }
         let scale = (1.0 - f64::from(openness)) / total;
-        let is_inside = |hit: &Hit| !hit.front && !self.world.double_sided(hit.triangle);
-        let inside: f64 = found.iter().filter(|(_, hit, _)| is_inside(hit)).map(|(_, _, weight)| weight).sum();
+        let bodies = &self.world.bodies;
+        let inside: f64 = found.iter().filter(|(_, hit, _)| bodies.is_inside(hit)).map(|(_, _, weight)| weight).sum();
         let [xs, ys, zs] = &worker.directions;
         let direction = |j: usize| Vec3::new(xs[j], ys[j], zs[j]);
         let found = found.into_iter().map(|(j, hit, weight)| (direction(j), hit, (weight * scale) as f32));

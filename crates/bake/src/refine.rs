@@ -1,6 +1,7 @@
 //! Splits large triangles, since a vertex is all that can hold a shadow.
 
 use crate::bend::{Bends, place};
+use crate::exits::cut_at_exits;
 use crate::facts::Facts;
 use crate::passes::Monitor;
 use crate::plan::{allowed, world};
@@ -68,7 +69,9 @@ pub fn refine_watched<'a>(
                 return Ok(Cow::Borrowed(scene));
             }
             let longest = even_edge(scene);
-            at_bends(evenly(scene, longest)?, longest, &world, &Monitor::new(progress))
+            let monitor = Monitor::new(progress);
+            let split = at_bends(evenly(scene, longest)?, longest, &world, &monitor)?;
+            cut_at_exits(split, &world, &monitor)
         }
     }
 }

@@ -52,7 +52,11 @@ pub(crate) fn emerge(scene: &Scene, world: &World<'_>, receivers: &Receivers, in
     let stuck = |id: u32| inside[id as usize] || !receivers.list[id as usize].sound;
     let way_out = |id: u32| {
         let sound = neighbours.around(id).iter().copied().filter(|&n| !stuck(n));
-        let points = sound.filter_map(|n| entry(world, &receivers.list[n as usize], &receivers.list[id as usize]));
+        let to = &receivers.list[id as usize];
+        let points = sound.filter_map(|n| {
+            let from = &receivers.list[n as usize];
+            Some(from.position + entry(world, from, to)? * (to.position - from.position))
+        });
         let home = receivers.list[id as usize].vertex;
         points.min_by(|a, b| a.distance_squared(home).total_cmp(&b.distance_squared(home)))
     };
@@ -60,13 +64,17 @@ pub(crate) fn emerge(scene: &Scene, world: &World<'_>, receivers: &Receivers, in
     ids.into_par_iter().filter_map(|id| way_out(id).map(|point| (id, point))).collect()
 }
 
-/// The point of the way from one receiver to another just before it runs into something.
-fn entry(world: &World<'_>, from: &Receiver, to: &Receiver) -> Option<Vec3> {
+/// Share of the way from one receiver to another just before it runs into a body.
+pub(crate) fn entry(world: &World<'_>, from: &Receiver, to: &Receiver) -> Option<f32> {
     let start = offset_origin(from.position, from.geometric_normal);
     let end = offset_origin(to.position, from.geometric_normal);
-    let solid = |triangle, u, v| world.solid(triangle, u, v);
-    let hit = world.tracer.closest(&Ray { t_max: 1.0, ..Ray::new(start, end - start) }, &solid)?;
-    Some(from.position + BEFORE * hit.t * (to.position - from.position))
+    let mut ray = Ray { t_max: 1.0, ..Ray::new(start, end - start) };
+    let mut hit = world.closest(&ray)?;
+    while !(hit.front && world.bodies.bound(hit.triangle)) {
+        ray.t_min = hit.t.next_up();
+        hit = world.closest(&ray)?;
+    }
+    Some(BEFORE * hit.t)
 }
 
 impl Repair {

@@ -28,17 +28,22 @@ pub(crate) fn length(mesh: &Mesh, [a, b]: Edge) -> f32 {
 /// Halves every edge that `wanted` names once, and returns the new vertices by the edges that they halve. Vertices keep
 /// their indices, new ones follow.
 pub(crate) fn halve(mesh: &mut Mesh, wanted: impl Fn(&Mesh, Edge) -> bool) -> HashMap<Edge, u32> {
-    let mut middles = HashMap::new();
+    cut(mesh, |mesh, edge| wanted(mesh, edge).then_some(0.5))
+}
+
+/// [`halve`] at any share of the way from an edge's smaller vertex to its larger one.
+pub(crate) fn cut(mesh: &mut Mesh, share: impl Fn(&Mesh, Edge) -> Option<f32>) -> HashMap<Edge, u32> {
+    let mut cuts = HashMap::new();
     let mut triangles = Vec::with_capacity(mesh.triangles.len());
     for triangle in std::mem::take(&mut mesh.triangles) {
-        let cut = edges(&triangle).map(|edge| {
+        let at = edges(&triangle).map(|edge| {
             let edge = sorted(edge);
-            wanted(mesh, edge).then(|| *middles.entry(edge).or_insert_with(|| add_middle(mesh, edge)))
+            share(mesh, edge).map(|share| *cuts.entry(edge).or_insert_with(|| add_between(mesh, edge, share)))
         });
-        triangles.extend(pieces(mesh, triangle, cut));
+        triangles.extend(pieces(mesh, triangle, at));
     }
     mesh.triangles = triangles;
-    middles
+    cuts
 }
 
 /// The parts of a triangle whose edges ab, bc, ca are cut at the given vertices.
@@ -66,28 +71,29 @@ fn corner_cut(mesh: &Mesh, [a, b, c]: [u32; 3], ab: u32, ca: u32) -> Vec<[u32; 3
     parts
 }
 
-/// Adds the vertex half-way along an edge.
-fn add_middle(mesh: &mut Mesh, [a, b]: Edge) -> u32 {
+/// Adds the vertex at a share of the way along an edge.
+fn add_between(mesh: &mut Mesh, [a, b]: Edge, share: f32) -> u32 {
     let (a, b) = (a as usize, b as usize);
     let index = mesh.positions.len() as u32;
-    mesh.positions.push(0.5 * (mesh.positions[a] + mesh.positions[b]));
+    let (of_a, of_b) = (1.0 - share, share);
+    mesh.positions.push(of_a * mesh.positions[a] + of_b * mesh.positions[b]);
     if !mesh.normals.is_empty() {
-        let normal: Vec3 = mesh.normals[a] + mesh.normals[b];
+        let normal: Vec3 = of_a * mesh.normals[a] + of_b * mesh.normals[b];
         mesh.normals.push(normal.try_normalize().unwrap_or(mesh.normals[a]));
     }
     if !mesh.tangents.is_empty() {
         let (ta, tb): (Vec4, Vec4) = (mesh.tangents[a], mesh.tangents[b]);
-        let tangent = (ta + tb).truncate().try_normalize().unwrap_or(ta.truncate());
+        let tangent = (of_a * ta + of_b * tb).truncate().try_normalize().unwrap_or(ta.truncate());
         mesh.tangents.push(tangent.extend(ta.w));
     }
     if !mesh.uv0.is_empty() {
-        mesh.uv0.push(0.5 * (mesh.uv0[a] + mesh.uv0[b]));
+        mesh.uv0.push(of_a * mesh.uv0[a] + of_b * mesh.uv0[b]);
     }
     if !mesh.uv1.is_empty() {
-        mesh.uv1.push(0.5 * (mesh.uv1[a] + mesh.uv1[b]));
+        mesh.uv1.push(of_a * mesh.uv1[a] + of_b * mesh.uv1[b]);
     }
     if !mesh.colors.is_empty() {
-        mesh.colors.push(0.5 * (mesh.colors[a] + mesh.colors[b]));
+        mesh.colors.push(of_a * mesh.colors[a] + of_b * mesh.colors[b]);
     }
     index
 }

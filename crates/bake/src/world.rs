@@ -1,11 +1,12 @@
 //! The scene as rays meet it: one list of triangles, and what a hit needs to know.
 
 use crate::Error;
+use crate::bodies::Bodies;
 use crate::hit::NearPoint;
 use crate::receivers::Receiver;
 use crate::transmittance::Translucent;
 use glam::Vec3;
-use raytrace::{Hit, Tracer};
+use raytrace::{Hit, Ray, Tracer};
 use scene::{AlphaMode, Scene};
 use sh_math::brdf::{DIELECTRIC, MEAN_DIFFUSE_LOSS, mean_environment_brdf};
 
@@ -30,6 +31,8 @@ pub(crate) struct World<'a> {
     pub(crate) trace_all: bool,
     /// Of each material; empty where all are matte.
     pub(crate) shine: Vec<Shine>,
+    /// Which triangles bound bodies.
+    pub(crate) bodies: Bodies,
 }
 
 /// What becomes of light that a material mirrors, on its way to other surfaces.
@@ -60,6 +63,7 @@ impl<'a> World<'a> {
             has_masks: false,
             trace_all: false,
             shine: Vec::new(),
+            bodies: Bodies::default(),
         };
         let mut positions: Vec<Vec3> = Vec::new();
         let mut masked = Vec::new();
@@ -83,6 +87,7 @@ impl<'a> World<'a> {
             masked.clear();
         }
         world.tracer = Tracer::build(&positions, &world.corners, &masked);
+        world.bodies = Bodies::of(&world);
         Ok(world)
     }
 
@@ -128,11 +133,6 @@ impl<'a> World<'a> {
         self.translucent.as_ref().is_some_and(|layer| layer.tints)
     }
 
-    /// Whether a traced triangle is translucent.
-    pub(crate) fn is_translucent(&self, triangle: u32) -> bool {
-        self.translucent.as_ref().is_some_and(|layer| triangle >= layer.first)
-    }
-
     /// Whether rays are needed: where something can stand between a receiver and the sky, and what arrives shows.
     pub(crate) fn can_shadow(&self, receiver: &Receiver) -> bool {
         !receiver.dark && (self.trace_all && receiver.sound || self.anything_above(receiver))
@@ -163,6 +163,17 @@ impl<'a> World<'a> {
         }
     }
 
+    /// The nearest surface along a ray.
+    pub(crate) fn closest(&self, ray: &Ray) -> Option<Hit> {
+        self.tracer.closest(ray, &|triangle, u, v| self.solid(triangle, u, v))
+    }
+
+    /// Whether a triangle is opaque and has one side, so that its back may be the inside of a body.
+    pub(crate) fn is_one_sided(&self, triangle: u32) -> bool {
+        let material = &self.scene.materials[self.scene.meshes[self.locate(triangle).0].material as usize];
+        material.alpha == AlphaMode::Opaque && material.transmission <= 0.0 && !material.double_sided
+    }
+
     /// Share of the light at a hit that the surface sends on to all sides, linear: its albedo; where it shines less what its mirror takes, and
     /// more by what the mirror of a dielectric returns on its mean where that is not sent by direction.
     pub(crate) fn sent(&self, hit: &Hit) -> Vec3 {
@@ -181,12 +192,6 @@ impl<'a> World<'a> {
         let [metallic, roughness] = self.scene.shine(mesh, local, hit.u, hit.v);
         let [scale, bias] = mean_environment_brdf(roughness);
         body + (1.0 - metallic) * (DIELECTRIC * scale + bias)
-    }
-
-    /// Whether the back of a triangle is a real surface rather than the inside of a body.
-    pub(crate) fn double_sided(&self, triangle: u32) -> bool {
-        let (mesh, _) = self.locate(triangle);
-        self.scene.materials[self.scene.meshes[mesh].material as usize].double_sided
     }
 
     /// Longest edge of a traced triangle, metres.

@@ -86,8 +86,7 @@ impl Gatherer<'_> {
             total += weight;
             for (hit, share, filter) in seen.hits {
                 let weight = weight * f64::from(share);
-                let is_inside =
-                    !hit.front && !self.world.is_translucent(hit.triangle) && !self.world.double_sided(hit.triangle);
+                let is_inside = self.world.bodies.is_inside(&hit);
                 inside += if is_inside { weight } else { 0.0 };
                 all.found.push((direction, hit, weight as f32));
                 all.filters.push(filter);

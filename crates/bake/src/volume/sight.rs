@@ -9,6 +9,9 @@ use raytrace::{FanState, Hit, Ray};
 const SIDE: u32 = 32;
 /// A probe that sees more than this share of insides of bodies is inside one.
 const MOST_INSIDE: f32 = 0.25;
+/// Share of the sphere that the backs of ground take from below, and length of the mean of its unit normals.
+const GROUND: f32 = 0.45;
+const LEVEL: f32 = 0.8;
 /// Share of a cell's shortest edge by which a probe is put before a surface.
 const MARGIN: f32 = 1.0 / 16.0;
 /// The same for how near a surface must be to count as running through the probe, which then may see neither side of it.
@@ -117,10 +120,12 @@ impl<'a> Sight<'a> {
         let mut hits = vec![None; xs.len()];
         let solid = |triangle, u, v| self.world.solid(triangle, u, v);
         self.world.tracer.closest_fan(at, xs, ys, zs, &self.wanted, &solid, fan, &mut hits);
+        let covers = self.is_under_ground(&hits);
         let mut inside = 0.0f64;
         let mut exits = [None::<(Vec3, f32)>; 6];
         for (i, hit) in hits.iter().enumerate() {
-            let Some(hit) = hit.filter(|hit| self.is_inside(hit)) else { continue };
+            let is_inside = |hit: &Hit| self.is_inside(hit) || covers && self.is_sheet(hit);
+            let Some(hit) = hit.filter(is_inside) else { continue };
             inside += f64::from(self.shares[i]);
             let direction = Vec3::new(xs[i], ys[i], zs[i]);
             let exit = &mut exits[main_axis(direction)];
@@ -151,8 +156,26 @@ impl<'a> Sight<'a> {
         hits.chunks_exact(self.rays).zip(self.shares.chunks_exact(self.rays)).flat_map(texel).collect()
     }
 
+    /// Whether nearly a half space is the backs of one-sided sheets that face the same way: ground seen from below, although it bounds
+    /// no body. Leaves face all ways, and slats and awnings are not as wide.
+    fn is_under_ground(&self, hits: &[Option<Hit>]) -> bool {
+        let (mut share, mut facing) = (0.0f32, Vec3::ZERO);
+        for (hit, &part) in hits.iter().zip(&self.shares) {
+            let Some(hit) = hit.filter(|hit| self.is_sheet(hit)) else { continue };
+            let [a, b, c] = self.world.points(hit.triangle);
+            share += part;
+            facing += part * (b - a).cross(c - a).normalize_or_zero();
+        }
+        share > GROUND && facing.length() > LEVEL * share
+    }
+
+    /// Whether a hit is on the back of a one-sided surface that bounds no body.
+    fn is_sheet(&self, hit: &Hit) -> bool {
+        !hit.front && self.world.is_one_sided(hit.triangle)
+    }
+
     fn is_inside(&self, hit: &Hit) -> bool {
-        !hit.front && !self.world.double_sided(hit.triangle)
+        self.world.bodies.is_inside(hit)
     }
 
     /// A point before the surface that runs through a point, if one does.
@@ -186,7 +209,7 @@ impl<'a> Sight<'a> {
     }
 
     fn closest(&self, ray: &Ray) -> Option<Hit> {
-        self.world.tracer.closest(ray, &|triangle, u, v| self.world.solid(triangle, u, v))
+        self.world.closest(ray)
     }
 }
 
