@@ -1,65 +1,148 @@
 //! Whether a receiver sees anything at all on its side of its tangent plane.
 
+use crate::flat::Flats;
 use crate::tracer::Tracer;
-use crate::tree::Child;
-use glam::Vec3;
+use crate::tree::{Child, Tree};
+use glam::{DVec3, Vec3};
 
 /// A corner counts as above the plane from this part of the largest coordinate in play: half of the step by which
 /// rays leave a surface, so that whatever lies lower is below where the rays start.
 const TOLERANCE: f64 = 1.0 / 4_194_304.0;
 
+/// Nodes and blocks that are opened by their boxes alone. Most questions are answered by then; the others are about planes that run
+/// along much of the scene, and are worth looking at how flat the parts of the tree are.
+const BY_BOXES: usize = 24;
+
 impl Tracer {
     /// Whether any triangle has a corner above the plane through `origin` with unit `normal`, by more than 2^-22 of
     /// the largest coordinate of the two; where none has, no ray from a point stepped off that plane is blocked.
     pub fn anything_above(&self, origin: Vec3, normal: Vec3) -> bool {
-        self.find(origin, normal, 0.0, &|height, size, _| height > TOLERANCE * size)
+        self.find(&Half::above(origin, normal)).0
     }
 
     /// The same for triangles whose front faces against `normal`, which count from `slack` metres below the plane on and where
     /// they touch it: ground that a body rests on, as a point just above the foot of that body sees it.
     pub fn anything_faced(&self, origin: Vec3, normal: Vec3, slack: f32) -> bool {
-        let slack = f64::from(slack);
-        let n = normal.as_dvec3();
-        let faces = |[a, b, c]: [Vec3; 3]| (b - a).as_dvec3().cross((c - a).as_dvec3()).dot(n) < 0.0;
-        self.find(origin, normal, slack, &|height, size, corners| {
-            height > -(slack + TOLERANCE * size) && faces(corners)
-        })
+        self.find(&Half::faced(origin, normal, slack)).0
     }
 
-    /// Whether some triangle has a corner that counts, by its height above the plane, the largest coordinate and the triangle;
-    /// only what may reach to `slack` below the plane is asked for.
-    fn find(&self, origin: Vec3, normal: Vec3, slack: f64, counts: &dyn Fn(f64, f64, [Vec3; 3]) -> bool) -> bool {
-        let (from, n) = (origin.as_dvec3(), normal.as_dvec3());
-        let any = |corners: [Vec3; 3]| {
-            corners.iter().any(|p| {
-                let size = f64::from(p.abs().max(origin.abs()).max_element());
-                counts((p.as_dvec3() - from).dot(n), size, corners)
-            })
-        };
-        let mut open = if self.tree.nodes.is_empty() { vec![] } else { vec![Child::node(0)] };
+    /// Nodes and blocks that [`Tracer::anything_above`] looks at: what its answer costs, without a clock.
+    pub fn steps_above(&self, origin: Vec3, normal: Vec3) -> usize {
+        self.find(&Half::above(origin, normal)).1
+    }
+
+    /// The same for [`Tracer::anything_faced`].
+    pub fn steps_faced(&self, origin: Vec3, normal: Vec3, slack: f32) -> usize {
+        self.find(&Half::faced(origin, normal, slack)).1
+    }
+
+    /// Whether some triangle counts, and how many nodes and blocks were looked at. Of the children of a node those that reach
+    /// highest come first: a box touches what is in it, so the way up mostly leads to an answer.
+    fn find(&self, half: &Half) -> (bool, usize) {
+        let tree = &self.tree;
+        let mut open = if tree.nodes.is_empty() { vec![] } else { vec![Child::node(0)] };
+        let mut flats: Option<&Flats> = None;
+        let mut steps = 0;
         while let Some(child) = open.pop() {
+            steps += 1;
             if let Some(index) = child.as_block() {
-                let block = &self.tree.blocks[index];
-                let lanes = (0..4).filter(|lane| block.valid >> lane & 1 == 1);
-                if lanes.map(|lane| block.corners(lane)).any(any) {
-                    return true;
+                if half.counts_in_block(tree, index) {
+                    return (true, steps);
                 }
                 continue;
             }
-            let node = &self.tree.nodes[child.index()];
-            let slots = (0..8).filter(|&slot| node.children[slot] != Child::NONE);
-            open.extend(
-                slots.filter(|&slot| reaches(node.child_bounds(slot), from, n, slack)).map(|slot| node.children[slot]),
-            );
+            if steps > BY_BOXES {
+                let flats = *flats.get_or_insert_with(|| self.flats.get_or_init(|| Flats::of(tree)));
+                if !flats.may_reach(child.index(), half) {
+                    continue;
+                }
+            }
+            half.push_reaching(tree, child.index(), &mut open);
         }
-        false
+        (false, steps)
     }
 }
 
-/// Whether the corner of a box that lies farthest along the normal is at most `slack` below the plane.
-fn reaches((lower, upper): (Vec3, Vec3), from: glam::DVec3, normal: glam::DVec3, slack: f64) -> bool {
-    let far = Vec3::select(normal.as_vec3().cmpgt(Vec3::ZERO), upper, lower);
-    // The boxes of split triangles are rounded; the exact test of the corners decides.
-    let size = f64::from(far.abs().max_element()).max(from.abs().max_element());
-    (far.as_dvec3() - from).dot(normal) > -(slack + TOLERANCE * size)
+/// What is asked for: corners above a plane, or a little below it on triangles that face it.
+#[derive(Debug)]
+pub(crate) struct Half {
+    pub(crate) from: DVec3,
+    pub(crate) normal: DVec3,
+    /// Metres below the plane from where triangles count that face it; where none is given all count, above the plane.
+    slack: Option<f64>,
+    /// Largest coordinate of the point, by amount.
+    size: f64,
+}
+
+impl Half {
+    fn above(origin: Vec3, normal: Vec3) -> Half {
+        let size = f64::from(origin.abs().max_element());
+        Half { from: origin.as_dvec3(), normal: normal.as_dvec3(), slack: None, size }
+    }
+
+    fn faced(origin: Vec3, normal: Vec3, slack: f32) -> Half {
+        Half { slack: Some(f64::from(slack)), ..Half::above(origin, normal) }
+    }
+
+    /// Whether only triangles count that face the plane.
+    pub(crate) fn is_faced(&self) -> bool {
+        self.slack.is_some()
+    }
+
+    fn height(&self, point: Vec3) -> f64 {
+        (point.as_dvec3() - self.from).dot(self.normal)
+    }
+
+    /// Height that a corner of largest coordinate `size` must exceed.
+    fn least(&self, size: f64) -> f64 {
+        let tolerance = TOLERANCE * size.max(self.size);
+        self.slack.map_or(tolerance, |slack| -(slack + tolerance))
+    }
+
+    /// Height that every corner in a box must exceed at least.
+    pub(crate) fn least_in(&self, (lower, upper): (Vec3, Vec3)) -> f64 {
+        // Above the plane the demand grows with the coordinates of a corner, below it shrinks.
+        let size = if self.is_faced() {
+            lower.abs().max(upper.abs()).max_element()
+        } else {
+            lower.max(-upper).max(Vec3::ZERO).max_element()
+        };
+        self.least(f64::from(size))
+    }
+
+    fn counts_in_block(&self, tree: &Tree, index: usize) -> bool {
+        let block = &tree.blocks[index];
+        let lanes = (0..4).filter(|lane| block.valid >> lane & 1 == 1);
+        lanes.map(|lane| block.corners(lane)).any(|corners| self.counts(corners))
+    }
+
+    fn counts(&self, corners: [Vec3; 3]) -> bool {
+        let high = |p: &Vec3| self.height(*p) > self.least(f64::from(p.abs().max_element()));
+        corners.iter().any(high) && (!self.is_faced() || facing(corners).dot(self.normal) < 0.0)
+    }
+
+    /// Adds the children of a node in whose boxes a corner may count, the highest last.
+    fn push_reaching(&self, tree: &Tree, index: usize, open: &mut Vec<Child>) {
+        let node = &tree.nodes[index];
+        let mut found = [(0.0, Child::NONE); 8];
+        let mut count = 0;
+        for slot in (0..8).filter(|&slot| node.children[slot] != Child::NONE) {
+            let (lower, upper) = node.child_bounds(slot);
+            // Rounding is monotonous: no corner in the box is reckoned higher than the corner of the box.
+            let far = Vec3::select(self.normal.as_vec3().cmpgt(Vec3::ZERO), upper, lower);
+            let excess = self.height(far) - self.least_in((lower, upper));
+            if excess > 0.0 {
+                found[count] = (excess, node.children[slot]);
+                count += 1;
+            }
+        }
+        let found = &mut found[..count];
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        open.extend(found.iter().map(|(_, child)| child));
+    }
+}
+
+/// A normal of a triangle on its front, of any length.
+pub(crate) fn facing([a, b, c]: [Vec3; 3]) -> DVec3 {
+    (b - a).as_dvec3().cross((c - a).as_dvec3())
 }

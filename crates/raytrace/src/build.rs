@@ -26,13 +26,14 @@ struct Soup {
 }
 
 impl Soup {
-    fn gather(positions: &[Vec3], indices: &[[u32; 3]]) -> Soup {
+    fn gather(positions: &[Vec3], indices: &[[u32; 3]], masked: &[bool]) -> Soup {
+        let hidden = repeats(positions, indices, masked);
         let mut soup =
             Soup { triangles: Vec::with_capacity(indices.len()), numbers: Vec::with_capacity(indices.len()) };
         for (number, corners) in indices.iter().enumerate() {
             let corner = |k: usize| positions.get(corners[k] as usize).copied().unwrap_or(Vec3::NAN);
             let corners = [corner(0), corner(1), corner(2)];
-            if traceable(corners) {
+            if traceable(corners) && !hidden[number] {
                 let [v0, v1, v2] = corners.map(Vec3A::from);
                 soup.triangles.push(Triangle { v0, v1, v2 });
                 soup.numbers.push(number as u32);
@@ -42,9 +43,35 @@ impl Soup {
     }
 }
 
+/// Of each triangle: whether one of a smaller number is the same, corner by corner, and asks no filter. All rays meet that one, and
+/// thousands in one place, as doubled geometry has them, would make a tree as deep as they are many.
+fn repeats(positions: &[Vec3], indices: &[[u32; 3]], masked: &[bool]) -> Vec<bool> {
+    let corner = |i: u32| positions.get(i as usize).map_or([u32::MAX; 3], |p| p.to_array().map(f32::to_bits));
+    let key = |number: u32| indices[number as usize].map(corner);
+    let is_masked = |number: u32| masked.get(number as usize) == Some(&true);
+    let hash = |number: u32| {
+        let mix = |hash: u64, &bits: &u32| (hash ^ u64::from(bits)).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23);
+        (key(number).as_flattened().iter().fold(0, mix), number)
+    };
+    let mut order: Vec<(u64, u32)> = (0..indices.len() as u32).map(hash).collect();
+    order.sort_unstable();
+    let mut hidden = vec![false; indices.len()];
+    for alike in order.chunk_by_mut(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
+        // The first asks no filter if any does not; what comes after it in number cannot be met before it.
+        alike.sort_unstable_by_key(|&(_, number)| (key(number), is_masked(number), number));
+        for same in alike.chunk_by(|a, b| key(a.1) == key(b.1)) {
+            let first = same[0].1;
+            for &(_, number) in &same[1..] {
+                hidden[number as usize] = !is_masked(first) && number > first;
+            }
+        }
+    }
+    hidden
+}
+
 /// Builds the tree over the triangles that can be hit; `masked` is empty or says which of them ask the filter.
 pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]], masked: &[bool]) -> Tree {
-    let soup = Soup::gather(positions, indices);
+    let soup = Soup::gather(positions, indices, masked);
     if soup.triangles.is_empty() {
         return Tree::default();
     }

@@ -19,6 +19,7 @@ mod closest_fan;
 mod depth;
 mod exact;
 mod fan;
+mod flat;
 mod found;
 mod group;
 mod lanes;

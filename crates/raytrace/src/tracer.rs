@@ -1,6 +1,7 @@
 //! The public face: triangles in, answers about rays out.
 
 use crate::build::build;
+use crate::flat::Flats;
 use crate::lanes::Path;
 use crate::level::{Job, Level, dispatch};
 use crate::nearest::nearest;
@@ -9,6 +10,7 @@ use crate::tree::{Child, Tree};
 use crate::walk::{Fresh, Solid, Walker, blocked};
 use glam::Vec3;
 use std::cell::Cell;
+use std::sync::OnceLock;
 
 thread_local! {
     /// The stack of this thread's walks: taken while one is under way, so that a filter may trace rays too.
@@ -23,6 +25,8 @@ thread_local! {
 pub struct Tracer {
     pub(crate) tree: Tree,
     pub(crate) level: Level,
+    /// Made when a question about a plane first needs it.
+    pub(crate) flats: OnceLock<Flats>,
 }
 
 impl Tracer {
@@ -31,7 +35,7 @@ impl Tracer {
     /// Triangles with a corner that is missing, not finite or beyond 2^38 units are left out, as are those
     /// with two corners in one place.
     pub fn build(positions: &[Vec3], triangles: &[[u32; 3]], masked: &[bool]) -> Tracer {
-        Tracer { tree: build(positions, triangles, masked), level: Level::best() }
+        Tracer { tree: build(positions, triangles, masked), level: Level::best(), flats: OnceLock::new() }
     }
 
     /// The same tracer at another level; None where this processor lacks it.

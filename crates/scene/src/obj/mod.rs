@@ -3,6 +3,7 @@
 //! Both have many dialects: what cannot be misunderstood is read, what has a meaning but is not supported is told,
 //! and only what leaves no shape is refused, with its line. Lengths are taken as they are, as metres.
 
+mod ears;
 mod library;
 mod map;
 mod mtl;

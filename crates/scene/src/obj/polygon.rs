@@ -1,9 +1,7 @@
 //! Polygons cut into triangles.
 
+use super::ears::{Ears, area};
 use glam::{DVec2, DVec3, Vec3};
-
-/// Most corners of a polygon that are cut by ears, whose cost grows with the square; larger ones become fans.
-const MAX_EARS: usize = 1024;
 
 /// Triangles of all faces; `arities` holds their numbers of corners and is empty where all have three.
 pub(super) fn triangulate(positions: &[Vec3], indices: &[u32], arities: &[u32]) -> Vec<[u32; 3]> {
@@ -25,19 +23,15 @@ fn cut(positions: &[Vec3], face: &[u32], triangles: &mut Vec<[u32; 3]>) {
         triangles.extend(corners.windows(2).skip(1).map(|w| [corners[0], w[0], w[1]]));
     };
     let points = projected(positions, face);
-    if face.len() <= 3 || face.len() > MAX_EARS || is_convex(&points) {
+    if face.len() <= 3 || is_convex(&points) {
         return fan(triangles, face);
     }
-    let mut left: Vec<usize> = (0..face.len()).collect();
-    while left.len() > 3 {
-        let n = left.len();
-        let ear = (0..n).find(|&i| is_ear(&points, &left, i));
-        // Self-crossing outlines may have none; a fan of the rest keeps their corners at least.
-        let Some(i) = ear else { break };
-        triangles.push([left[(i + n - 1) % n], left[i], left[(i + 1) % n]].map(|k| face[k]));
-        left.remove(i);
+    let mut ears = Ears::of(&points);
+    while let Some(ear) = ears.cut() {
+        triangles.push(ear.map(|k| face[k]));
     }
-    let rest: Vec<u32> = left.iter().map(|&k| face[k]).collect();
+    // Without an ear left a fan keeps the corners at least.
+    let rest: Vec<u32> = ears.rest().into_iter().map(|k| face[k]).collect();
     fan(triangles, &rest);
 }
 
@@ -51,26 +45,98 @@ fn projected(positions: &[Vec3], face: &[u32]) -> Vec<DVec2> {
     points.iter().map(|p| DVec2::new((*p - origin).dot(s), (*p - origin).dot(t))).collect()
 }
 
-/// Twice the signed area of a triangle.
-fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
-    (b - a).perp_dot(c - a)
-}
-
 fn is_convex(points: &[DVec2]) -> bool {
     let n = points.len();
     (0..n).all(|i| area(points[i], points[(i + 1) % n], points[(i + 2) % n]) >= 0.0)
 }
 
-/// Whether corner `i` of what is left is convex and its triangle holds no other corner.
-fn is_ear(points: &[DVec2], left: &[usize], i: usize) -> bool {
-    let n = left.len();
-    let [before, at, after] = [left[(i + n - 1) % n], left[i], left[(i + 1) % n]];
-    let (a, b, c) = (points[before], points[at], points[after]);
-    let inside = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
-    area(a, b, c) > 0.0
-        && left.iter().filter(|&&k| k != before && k != at && k != after).all(|&k| {
-            let p = points[k];
-            // Corners that touch the ear's own, as where a hole is joined by a slit, do not count.
-            p == a || p == b || p == c || !inside(p)
-        })
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same by definition: the first ear in order, looked for anew after each cut.
+    fn first_ears(points: &[DVec2]) -> Vec<[usize; 3]> {
+        let mut left: Vec<usize> = (0..points.len()).collect();
+        let mut found = Vec::new();
+        let is_ear = |left: &[usize], i: usize| {
+            let n = left.len();
+            let [a, b, c] = [left[(i + n - 1) % n], left[i], left[(i + 1) % n]].map(|k| points[k]);
+            let holds = |p: DVec2| area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
+            let other = |p: DVec2| p != a && p != b && p != c;
+            area(a, b, c) > 0.0 && !left.iter().map(|&k| points[k]).any(|p| other(p) && holds(p))
+        };
+        while left.len() > 3 {
+            let n = left.len();
+            let Some(i) = (0..n).find(|&i| is_ear(&left, i)) else { break };
+            found.push([left[(i + n - 1) % n], left[i], left[(i + 1) % n]]);
+            left.remove(i);
+        }
+        found
+    }
+
+    fn cut_ears(points: &[DVec2]) -> Vec<[usize; 3]> {
+        let mut ears = Ears::of(points);
+        std::iter::from_fn(|| ears.cut()).collect()
+    }
+
+    /// A wheel whose corners lie at distances that `radius` tells.
+    fn wheel(n: usize, radius: impl Fn(usize) -> f64) -> Vec<DVec2> {
+        (0..n).map(|k| radius(k) * DVec2::from_angle(std::f64::consts::TAU * k as f64 / n as f64)).collect()
+    }
+
+    /// Teeth of a comb, some of them ending on a common line.
+    fn comb(n: usize) -> Vec<DVec2> {
+        let tooth = |k: usize| DVec2::new(k as f64, if k % 2 == 0 { 0.0 } else { 5.0 - 0.25 * (k % 7) as f64 });
+        let mut points: Vec<DVec2> = (0..n).rev().map(tooth).collect();
+        points.extend([DVec2::new(0.0, -1.0), DVec2::new(n as f64, -1.0)]);
+        points
+    }
+
+    fn outlines(n: usize) -> Vec<Vec<DVec2>> {
+        let uneven = |k: usize| 1.0 + ((k * 7_919) % 101) as f64 / 50.0;
+        vec![
+            wheel(n, |k| 1.0 + (k % 2) as f64),
+            wheel(n, uneven),
+            wheel(n, |k| 1.0 + 0.3 * f64::sin(0.3 * k as f64)),
+            comb(n),
+            // Crosses itself.
+            wheel(n, |k| if k % 5 == 0 { -0.7 } else { 1.0 }),
+        ]
+    }
+
+    #[test]
+    fn ears_are_the_first_in_order() {
+        for n in [5, 12, 33, 100, 301] {
+            for points in outlines(n) {
+                assert_eq!(cut_ears(&points), first_ears(&points), "{n} corners");
+            }
+        }
+    }
+
+    #[test]
+    fn ears_are_the_first_in_order_can_fail() {
+        let points = comb(33);
+        let turned: Vec<DVec2> = points.iter().copied().cycle().skip(1).take(points.len()).collect();
+        assert_ne!(cut_ears(&turned), first_ears(&points), "the order matters");
+    }
+
+    /// Area of a concave polygon, by the shoelace formula; a fan would cover more. Looking for each ear among all corners is
+    /// hopeless at this size.
+    #[test]
+    fn large_concave_polygons_are_covered_once() {
+        for points in outlines(30_000).into_iter().take(4) {
+            let positions: Vec<Vec3> = points.iter().map(|p| p.as_vec2().extend(0.0)).collect();
+            let face: Vec<u32> = (0..points.len() as u32).collect();
+            let size = |t: &[u32; 3]| {
+                let [a, b, c] = t.map(|k| positions[k as usize].as_dvec3());
+                0.5 * (b - a).cross(c - a).length()
+            };
+            let covered: f64 = triangulate(&positions, &face, &[face.len() as u32]).iter().map(size).sum();
+            let flat: Vec<DVec2> = positions.iter().map(|p| p.as_dvec3().truncate()).collect();
+            let lace: f64 = (0..flat.len()).map(|k| 0.5 * flat[k].perp_dot(flat[(k + 1) % flat.len()])).sum();
+            assert!((covered / lace - 1.0).abs() < 1e-9, "{covered} covered of {lace}");
+            let fan: f64 = (1..face.len() as u32 - 1).map(|k| size(&[0, k, k + 1])).sum();
+            assert!(fan > 1.001 * lace, "can fail: a fan covers {fan}");
+        }
+    }
 }
