@@ -133,7 +133,6 @@ fn kinds() -> Vec<Kind> {
 fn steps_hardly_grow_with_the_scene() {
     for (name, shape) in kinds() {
         let (few, many) = (shape(24).steps(), shape(96).steps());
-        println!("{name}: {few:.1} steps, {many:.1} with 16 times the triangles");
         assert!(many < 3.0 * few + 30.0 && many < 120.0, "{name}: {few} steps, then {many}");
     }
 }
