@@ -86,7 +86,8 @@ mod tests {
 
     /// Teeth of a comb, some of them ending on a common line.
     fn comb(n: usize) -> Vec<DVec2> {
-        let tooth = |k: usize| DVec2::new(k as f64, if k % 2 == 0 { 0.0 } else { 5.0 - 0.25 * (k % 7) as f64 });
+        let tooth =
+            |k: usize| DVec2::new(k as f64, if k.is_multiple_of(2) { 0.0 } else { 5.0 - 0.25 * (k % 7) as f64 });
         let mut points: Vec<DVec2> = (0..n).rev().map(tooth).collect();
         points.extend([DVec2::new(0.0, -1.0), DVec2::new(n as f64, -1.0)]);
         points
@@ -100,7 +101,7 @@ mod tests {
             wheel(n, |k| 1.0 + 0.3 * f64::sin(0.3 * k as f64)),
             comb(n),
             // Crosses itself.
-            wheel(n, |k| if k % 5 == 0 { -0.7 } else { 1.0 }),
+            wheel(n, |k| if k.is_multiple_of(5) { -0.7 } else { 1.0 }),
         ]
     }
 
