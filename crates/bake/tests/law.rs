@@ -147,3 +147,16 @@ fn bad_normals_are_found() {
     assert!(prt.transfer.values.iter().all(|v| v.is_finite()), "no number may be lost");
     assert_eq!(prt.transfer.values[..9], prt.transfer.values[5 * 9..6 * 9], "the mended vertex is like the others");
 }
+
+/// A scene's origin and its unlit materials are in the file; the coefficients are those of the scene without.
+#[test]
+fn origins_and_unlit_materials_are_kept() {
+    let near = scene::builtin("sphere-on-plane").expect("builtin");
+    let mut far = scene::Scene { origin: [500_000.25, 0.0, -5_300_000.0], ..near.clone() };
+    far.materials[0].unlit = true;
+    let settings = fixed(3, Sampler::OwenSobol, 16, 1);
+    let (near, far) = (quiet(&near, &settings), quiet(&far, &settings));
+    assert_eq!(far.origin, [500_000.25, 0.0, -5_300_000.0]);
+    assert!(far.materials[0].unlit && !near.materials[0].unlit);
+    assert_eq!((&near.transfer, &near.geometry), (&far.transfer, &far.geometry));
+}

@@ -11,6 +11,8 @@ use std::path::Path;
 /// Writes `positions.npy` `[R, 3]`, `normals.npy` `[R, 3]`, `transfer.npy` `[R, n*n, C]` and, where C = 1,
 /// `albedo.npy` `[R, 3]` into `folder`, which is made if need be; all of little-endian f32.
 ///
+/// Positions are those of the world: of little-endian f64 where the file has an origin, which f32 could not hold.
+///
 /// The mesh comes with them: `triangles.npy` `[T, 3]` of little-endian u32, `uv0.npy` and `uv1.npy` `[R, 2]` where there
 /// are texture coordinates, and `meshes.json` with the ranges of the meshes, their materials and the names of textures.
 ///
@@ -26,7 +28,7 @@ pub fn npy(prt: &Prt, folder: &Path) -> Result<(), Error> {
     let rows = prt.geometry.positions.len() as u64;
     let transfer = &prt.transfer;
     let (coefficients, channels) = (u64::from(transfer.bands).pow(2), u64::from(transfer.channels));
-    array(&folder.join("positions.npy"), &[rows, 3], prt.geometry.positions.as_flattened().iter().copied())?;
+    positions(prt, &folder.join("positions.npy"))?;
     array(&folder.join("normals.npy"), &[rows, 3], prt.geometry.normals.as_flattened().iter().copied())?;
     mesh(prt, folder)?;
     crate::export_gloss::gloss_npy(prt, folder)?;
@@ -62,6 +64,7 @@ fn mesh(prt: &Prt, folder: &Path) -> Result<(), Error> {
     };
     let value = serde_json::json!({
         "scene": prt.scene,
+        "origin": prt.origin,
         "meshes": prt.meshes,
         "materials": prt.materials,
         "unlit": (0..prt.materials.len()).filter(|&index| prt.materials[index].unlit).collect::<Vec<_>>(),
@@ -75,6 +78,21 @@ fn remove(path: &Path) -> Result<(), Error> {
         Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e.into()),
         _ => Ok(()),
     }
+}
+
+/// World positions of the receivers.
+fn positions(prt: &Prt, path: &Path) -> Result<(), Error> {
+    let (positions, shape) = (&prt.geometry.positions, [prt.geometry.positions.len() as u64, 3]);
+    if prt.origin == [0.0; 3] {
+        return array(path, &shape, positions.as_flattened().iter().copied());
+    }
+    let world = positions.iter().flat_map(|p| std::array::from_fn::<f64, 3, _>(|k| prt.origin[k] + f64::from(p[k])));
+    let dtype = npyz::DType::Plain("<f8".parse().map_err(io::Error::other)?);
+    Ok(replace(path, |file| {
+        let mut writer = npyz::WriteOptions::new().dtype(dtype).shape(&shape).writer(file).begin_nd()?;
+        writer.extend(world)?;
+        writer.finish()
+    })?)
 }
 
 /// Writes light coefficients as one array `[n*n, 3]` of little-endian f32.

@@ -34,6 +34,8 @@ fn three_channels_have_the_albedo_in_the_transfer() {
         assert_eq!(*value, prt.transfer.values[i] * prt.transfer.albedo[i / 12][i % 3], "value {i}");
     }
     assert!(!folder.path().join("albedo.npy").exists());
+    let near = coeff_io::Prt { origin: [0.0; 3], ..prt.clone() };
+    export::npy(&near, folder.path()).unwrap();
     assert_eq!(
         read_npy(&folder.path().join("positions.npy")),
         (vec![7, 3], prt.geometry.positions.as_flattened().to_vec())
@@ -63,6 +65,23 @@ fn every_export_has_its_mesh() {
     prt.materials.iter_mut().for_each(|m| m.base_color_texture = None);
     export::npy(&prt, folder.path()).unwrap();
     assert!(!folder.path().join("uv0.npy").exists());
+}
+
+/// Where the file has an origin, positions are those of the world, in f64: f32 has steps of half a metre there.
+#[test]
+fn positions_far_from_the_origin_are_of_the_world() {
+    let folder = tempfile::tempdir().unwrap();
+    let prt = sample();
+    assert!(prt.origin[2] < -5e6);
+    export::npy(&prt, folder.path()).unwrap();
+    let bytes = std::fs::read(folder.path().join("positions.npy")).unwrap();
+    let text = String::from_utf8_lossy(&bytes[10..100]).into_owned();
+    assert!(text.contains("'descr': '<f8'") && text.contains("(7, 3"), "{text}");
+    let values = bytes[bytes.len() - 8 * 21..].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap()));
+    for (i, value) in values.enumerate() {
+        let expected = prt.origin[i % 3] + f64::from(prt.geometry.positions[i / 3][i % 3]);
+        assert_eq!(value, expected, "value {i}");
+    }
 }
 
 /// The albedo of the sample is not 1, so that its product differs from the bare transfer.

@@ -214,7 +214,8 @@ pub(crate) fn gloss_text(gloss: &coeff_io::GlossRecord, quality: Quality) -> Str
 /// Where the receiver with the worst error stands.
 pub(crate) fn worst_place(prt: &Prt) -> String {
     let id = prt.achieved.worst_receiver;
-    let [x, y, z] = prt.geometry.positions.get(id as usize).copied().unwrap_or_default();
+    let place = prt.geometry.positions.get(id as usize).copied().unwrap_or_default();
+    let [x, y, z] = std::array::from_fn(|k| prt.origin[k] + f64::from(place[k]));
     let of = |mesh: &&coeff_io::Mesh| (mesh.first_vertex..mesh.first_vertex + mesh.vertices).contains(&id);
     let mesh = prt.meshes.iter().find(of).map_or("", |mesh| mesh.name.as_str());
     format!("at receiver {id}, ({x:.4}, {y:.4}, {z:.4}) on '{mesh}'")

@@ -16,8 +16,8 @@ Examples:
   relume export atrium.prt --format dds --probe builtin:sky -o textures/
   relume export atrium.prt --format json -o text/
 
-npy writes positions.npy [R,3], normals.npy [R,3] and transfer.npy [R, n*n, C]. Where C is 3, transfer times \
-light is outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times \
+npy writes positions.npy [R,3] (of the world, float64 where that lies far away), normals.npy [R,3] and \
+transfer.npy [R, n*n, C]. Where C is 3, transfer times light is outgoing radiance. Where C is 1, albedo.npy [R,3] is written too and outgoing radiance is albedo times \
 that. The mesh follows: triangles.npy [T,3], uv0.npy and uv1.npy [R,2] where there are texture coordinates, and \
 meshes.json with names, ranges and materials. Gloss and transfer textures follow as arrays of rows: gloss_*.npy, \
 sheet_S_L_*.npy, bounce_book.npy and sheets.json (docs/format.md).

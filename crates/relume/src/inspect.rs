@@ -134,6 +134,10 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
         "geometry",
         format!("{} vertices, {} triangles, {meshes} meshes", vertices(seen), elements(seen, Kind::Triangles, 12)),
     )?;
+    if header.origin != [0.0; 3] {
+        let [x, y, z] = header.origin;
+        row("origin", format!("({x}, {y}, {z}) m was taken off all positions"))?;
+    }
     row("surfaces", format!("{materials} materials, {textures} textures"))?;
     row("cameras", header.cameras.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "))?;
     row("transfer", format!("{} bands, {} channel(s)", header.bands, header.channels))?;

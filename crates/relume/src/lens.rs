@@ -8,15 +8,15 @@ use anyhow::Result;
 pub(crate) enum Lens {
     /// A camera of the scene.
     Name(String),
-    /// Eye and target in metres, full vertical angle of view in degrees.
-    View { eye: [f32; 3], target: [f32; 3], fov: f32 },
+    /// Eye and target in world coordinates, metres; full vertical angle of view in degrees.
+    View { eye: [f64; 3], target: [f64; 3], fov: f32 },
 }
 
 /// Parses `NAME` or `ex,ey,ez,tx,ty,tz,fov`.
 pub(crate) fn parse(text: &str) -> Result<Lens, String> {
-    let numbers: Option<Vec<f32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     match numbers.as_deref() {
-        Some(&[ex, ey, ez, tx, ty, tz, fov]) => view([ex, ey, ez], [tx, ty, tz], fov),
+        Some(&[ex, ey, ez, tx, ty, tz, fov]) => view([ex, ey, ez], [tx, ty, tz], fov as f32),
         Some(numbers) if numbers.len() > 1 => {
             Err("a view of your own has seven numbers: eye x,y,z, target x,y,z and the angle of view in degrees".into())
         }
@@ -24,7 +24,7 @@ pub(crate) fn parse(text: &str) -> Result<Lens, String> {
     }
 }
 
-fn view(eye: [f32; 3], target: [f32; 3], fov: f32) -> Result<Lens, String> {
+fn view(eye: [f64; 3], target: [f64; 3], fov: f32) -> Result<Lens, String> {
     if !eye.iter().chain(&target).all(|v| v.is_finite()) || eye == target {
         return Err("eye and target must be two places".into());
     }
@@ -34,10 +34,17 @@ fn view(eye: [f32; 3], target: [f32; 3], fov: f32) -> Result<Lens, String> {
     Ok(Lens::View { eye, target, fov })
 }
 
+/// A world position relative to the origin of a scene or file.
+fn relative(world: [f64; 3], origin: [f64; 3]) -> [f32; 3] {
+    std::array::from_fn(|k| (world[k] - origin[k]) as f32)
+}
+
 /// The view of a baked file; its first camera where none was asked for.
-pub(crate) fn of_prt(lens: Option<&Lens>, cameras: &[coeff_io::Camera]) -> Result<coeff_io::Camera> {
+pub(crate) fn of_prt(lens: Option<&Lens>, prt: &coeff_io::Prt) -> Result<coeff_io::Camera> {
+    let cameras = &prt.cameras;
     let name = match lens {
         Some(&Lens::View { eye, target, fov }) => {
+            let [eye, target] = [eye, target].map(|place| relative(place, prt.origin));
             let (name, up, vertical_fov) = ("view".into(), [0.0, 1.0, 0.0], fov.to_radians());
             return Ok(coeff_io::Camera { name, eye, target, up, vertical_fov });
         }
@@ -53,8 +60,8 @@ pub(crate) fn of_scene(lens: Option<&Lens>, scene: &scene::Scene) -> Result<scen
     match lens {
         Some(&Lens::View { eye, target, fov }) => Ok(scene::Camera {
             name: "view".into(),
-            eye: eye.into(),
-            target: target.into(),
+            eye: relative(eye, scene.origin).into(),
+            target: relative(target, scene.origin).into(),
             up: glam::Vec3::Y,
             vertical_fov: fov.to_radians(),
         }),
@@ -88,6 +95,10 @@ mod tests {
 
     #[test]
     fn words_become_views() {
+        let far = parse("500012.25,9,-5299985.125,500000,0,-5300000,45").expect("a view");
+        let scene = scene::Scene { origin: [500_000.0, 0.0, -5_300_000.0], ..scene::Scene::default() };
+        let camera = of_scene(Some(&far), &scene).expect("a camera");
+        assert_eq!((camera.eye, camera.target), (glam::Vec3::new(12.25, 9.0, 14.875), glam::Vec3::ZERO));
         let view = Lens::View { eye: [0.0, 1.0, 5.0], target: [0.0, 1.0, 0.0], fov: 45.0 };
         assert_eq!(parse("0,1,5,0,1,0,45"), Ok(view));
         assert_eq!(parse("front"), Ok(Lens::Name("front".into())));

@@ -127,7 +127,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         None => Cow::Borrowed(&scene),
     };
     let frame = Frame {
-        camera: lens::of_prt(options.camera.as_ref(), &prt.cameras)?,
+        camera: lens::of_prt(options.camera.as_ref(), &prt)?,
         width: options.size.width,
         height: options.size.height,
         rotation: options.rotate,

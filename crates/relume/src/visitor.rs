@@ -4,7 +4,7 @@ use crate::console::Console;
 use crate::source;
 use anyhow::{Context, Result};
 use coeff_io::Prt;
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Affine3A, DVec3, Quat, Vec3};
 use std::path::PathBuf;
 
 /// The object and where it stands, as typed.
@@ -18,13 +18,13 @@ pub(crate) struct VisitorOptions {
     at: Place,
     /// Where it has moved to in the last of --frames.
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true, requires_all = ["visitor", "frames"])]
-    to: Option<Vec3>,
+    to: Option<DVec3>,
 }
 
-/// Where an object stands.
+/// Where an object stands, in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
-    at: Vec3,
+    at: DVec3,
     scale: f32,
     yaw: f32,
 }
@@ -34,7 +34,7 @@ pub(crate) struct Visitor {
     prt: Prt,
     file: PathBuf,
     place: Place,
-    to: Option<Vec3>,
+    to: Option<DVec3>,
 }
 
 impl VisitorOptions {
@@ -57,7 +57,10 @@ impl Visitor {
         let Some(volume) = &scene.volume else { return };
         let low = Vec3::from(volume.origin);
         let high = low + Vec3::from(volume.spacing) * Vec3::from(volume.cells.map(|n| n as f32));
-        let outside = |p: Vec3| p.clamp(low, high) != p;
+        let outside = |p: DVec3| {
+            let p = local(scene, p);
+            p.clamp(low, high) != p
+        };
         if outside(self.place.at) || self.to.is_some_and(outside) {
             console
                 .notice("the object stands outside of the irradiance volume: the light of its border is taken there");
@@ -67,7 +70,7 @@ impl Visitor {
     /// The scene with the object at a share of its way.
     pub(crate) fn at(&self, scene: &Prt, share: f32) -> Result<Prt> {
         let Place { at, scale, yaw } = self.place;
-        let at = self.to.map_or(at, |to| at.lerp(to, share));
+        let at = local(scene, self.to.map_or(at, |to| at.lerp(to, f64::from(share))));
         let place = Affine3A::from_scale_rotation_translation(Vec3::splat(scale), Quat::from_rotation_y(yaw), at);
         scene
             .with_visitor(&self.prt, &place)
@@ -75,14 +78,19 @@ impl Visitor {
     }
 }
 
-fn numbers(text: &str) -> Option<Vec<f32>> {
-    text.split(',').map(|part| part.trim().parse().ok().filter(|v: &f32| v.is_finite())).collect()
+/// A place in the coordinates of a file.
+fn local(scene: &Prt, world: DVec3) -> Vec3 {
+    (world - DVec3::from(scene.origin)).as_vec3()
+}
+
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    text.split(',').map(|part| part.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect()
 }
 
 /// Parses `X,Y,Z`.
-fn point(text: &str) -> Result<Vec3, String> {
+fn point(text: &str) -> Result<DVec3, String> {
     match numbers(text).as_deref() {
-        Some(&[x, y, z]) => Ok(Vec3::new(x, y, z)),
+        Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
         _ => Err("give three coordinates, such as 0,1,0".into()),
     }
 }
@@ -93,9 +101,9 @@ fn place(text: &str) -> Result<Place, String> {
         "give three coordinates, and if wanted a scale above 0 and a turn in degrees, such as 0,1,0,0.5,90".to_owned()
     };
     let (at, scale, yaw) = match numbers(text).as_deref() {
-        Some(&[x, y, z]) => (Vec3::new(x, y, z), 1.0, 0.0),
-        Some(&[x, y, z, scale]) => (Vec3::new(x, y, z), scale, 0.0),
-        Some(&[x, y, z, scale, yaw]) => (Vec3::new(x, y, z), scale, yaw.to_radians()),
+        Some(&[x, y, z]) => (DVec3::new(x, y, z), 1.0, 0.0),
+        Some(&[x, y, z, scale]) => (DVec3::new(x, y, z), scale as f32, 0.0),
+        Some(&[x, y, z, scale, yaw]) => (DVec3::new(x, y, z), scale as f32, (yaw as f32).to_radians()),
         _ => return Err(wrong()),
     };
     if scale > 0.0 { Ok(Place { at, scale, yaw }) } else { Err(wrong()) }
@@ -107,7 +115,7 @@ mod tests {
 
     #[test]
     fn places_are_parsed() {
-        assert_eq!(place("1,2,-3"), Ok(Place { at: Vec3::new(1.0, 2.0, -3.0), scale: 1.0, yaw: 0.0 }));
+        assert_eq!(place("1,2,-3"), Ok(Place { at: DVec3::new(1.0, 2.0, -3.0), scale: 1.0, yaw: 0.0 }));
         assert_eq!(place("0,0,0,0.5,180").map(|p| (p.scale, p.yaw)), Ok((0.5, std::f32::consts::PI)));
         assert!(place("1,2").is_err() && place("0,0,0,0").is_err() && place("0,0,nan").is_err() && point("1").is_err());
     }

@@ -13,6 +13,7 @@ mod load;
 mod model;
 mod normals;
 mod obj;
+mod origin;
 mod picture;
 mod repair;
 mod surface;

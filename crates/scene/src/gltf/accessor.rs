@@ -50,6 +50,25 @@ impl Document<'_> {
         })
     }
 
+    /// Values that a decoder gave as the integers of an accessor, normalised where it says so.
+    pub(super) fn normalized<const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        mut values: Vec<[f32; N]>,
+    ) -> Result<Vec<[f32; N]>, Error> {
+        let largest = match self.component(index)? {
+            ComponentType::I8 => 127.0,
+            ComponentType::U8 => 255.0,
+            ComponentType::I16 => 32_767.0,
+            ComponentType::U16 => 65_535.0,
+            ComponentType::U32 | ComponentType::F32 => return Ok(values),
+        };
+        if self.root.accessors[index.value()].normalized {
+            values.iter_mut().flatten().for_each(|value| *value = (*value / largest).max(-1.0));
+        }
+        Ok(values)
+    }
+
     /// All elements of a scalar accessor of unsigned integers.
     pub(super) fn integers(&self, index: Index<Accessor>) -> Result<Vec<u32>, Error> {
         self.expect_components(index, 1)?;
@@ -142,7 +161,7 @@ impl Document<'_> {
         size: usize,
     ) -> Result<Layout<'_>, Error> {
         let bytes = self.view(view)?;
-        let stride = self.root.buffer_views[view.value()].byte_stride.map_or(size, |s| s.0);
+        let stride = self.stride(view, size);
         if stride < size {
             return Err(self.invalid(object, format!("byteStride {stride} is less than an element of {size} bytes")));
         }

@@ -9,6 +9,7 @@ const BIN: u32 = 0x004E_4942;
 
 /// The JSON text and, of a GLB file, its binary chunk. Bytes without the magic number are taken as JSON text.
 pub(super) fn split<'a>(file: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), Error> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let is_glb = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb"));
     if !bytes.starts_with(b"glTF") {
         if is_glb {

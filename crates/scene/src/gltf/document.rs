@@ -1,42 +1,29 @@
 //! The checked JSON document and its buffers.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use ::gltf::json::validation::{Error as Fault, USize64, Validate};
 use ::gltf::json::{Index, Path as JsonPath, Root, Value};
 
-use super::warn;
+use super::complete::{Aside, complete};
+use super::extensions;
+use super::meshopt::{self, View};
 use crate::folder::{Folder, Missing};
 use crate::uri::{Uri, parse};
 use crate::{Error, Report};
-
-/// Extensions that a file may require: what they ask for is done.
-const SUPPORTED: &[&str] = &[
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_variants",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-];
-/// What to do about extensions that cannot be decoded here.
-const HINTS: &[(&str, &str)] = &[
-    ("KHR_draco_mesh_compression", "save the scene without Draco compression"),
-    ("EXT_meshopt_compression", "save the scene without meshopt compression"),
-    ("KHR_texture_basisu", "save the textures as PNG or JPEG"),
-    ("EXT_texture_webp", "save the textures as PNG or JPEG"),
-];
 
 /// A document that passed validation, with the bytes of its buffers.
 pub(super) struct Document<'a> {
     pub(super) file: PathBuf,
     pub(super) root: Root,
-    pub(super) buffers: Vec<Cow<'a, [u8]>>,
+    /// What the crate does not read.
+    pub(super) aside: Aside,
+    /// Empty where nothing but compressed views refers to a buffer.
+    buffers: Vec<Cow<'a, [u8]>>,
+    /// Views that were compressed, by index.
+    decoded: HashMap<usize, View>,
 }
 
 impl<'a> Document<'a> {
@@ -48,13 +35,15 @@ impl<'a> Document<'a> {
         folder: &Folder,
         report: &mut Report,
     ) -> Result<Self, Error> {
-        let root: Root = ::gltf::json::deserialize::from_slice(json).map_err(|error| not_json(file, json, &error))?;
+        let (root, aside) = parse_root(json).map_err(|error| not_json(file, json, &error))?;
         check_version(file, &root.asset.version)?;
-        check_extensions(file, &root, report)?;
+        extensions::check(file, &root, report)?;
         check_attributes(file, &root)?;
         validate(file, &root)?;
         let buffers = fetch_buffers(file, &root, binary, folder)?;
-        Ok(Self { file: file.to_owned(), root, buffers })
+        let mut document = Self { file: file.to_owned(), root, aside, buffers, decoded: HashMap::new() };
+        document.decoded = meshopt::decode_all(&document, report)?;
+        Ok(document)
     }
 
     /// An error about an object of this file.
@@ -62,20 +51,48 @@ impl<'a> Document<'a> {
         Error::invalid(&self.file, object, what)
     }
 
-    /// The bytes of a buffer view, checked against its buffer.
+    /// The bytes of a buffer view, checked against its buffer and decompressed.
     pub(super) fn view(&self, index: Index<::gltf::json::buffer::View>) -> Result<&[u8], Error> {
+        if let Some(view) = self.decoded.get(&index.value()) {
+            return Ok(&view.bytes);
+        }
         let view = &self.root.buffer_views[index.value()];
-        let object = || format!("bufferViews[{}]", index.value());
-        let buffer = &self.buffers[view.buffer.value()];
         let (offset, length) = (view.byte_offset.unwrap_or_default().0, view.byte_length.0);
-        let end = offset.checked_add(length).filter(|end| *end <= buffer.len() as u64);
-        let end = end.ok_or_else(|| {
-            let what =
-                format!("bytes {offset} + {length} lie outside buffer {} of {}", view.buffer.value(), buffer.len());
-            self.invalid(object(), what)
-        })?;
-        Ok(&buffer[offset as usize..end as usize])
+        self.bytes(&format!("bufferViews[{}]", index.value()), view.buffer.value(), offset, length)
     }
+
+    /// Bytes from one element of a buffer view to the next; `size` where they follow each other.
+    pub(super) fn stride(&self, index: Index<::gltf::json::buffer::View>, size: usize) -> usize {
+        let stated = self.root.buffer_views[index.value()].byte_stride.map(|stride| stride.0);
+        stated.or_else(|| self.decoded.get(&index.value()).map(|view| view.stride)).unwrap_or(size)
+    }
+
+    /// A range of a buffer that `object` refers to.
+    pub(super) fn bytes(&self, object: &str, buffer: usize, offset: u64, length: u64) -> Result<&[u8], Error> {
+        let bytes = self
+            .buffers
+            .get(buffer)
+            .ok_or_else(|| self.invalid(object, format!("buffer {buffer} of {}", self.buffers.len())))?;
+        match offset.checked_add(length).filter(|end| *end <= bytes.len() as u64) {
+            Some(end) => Ok(&bytes[offset as usize..end as usize]),
+            None => {
+                let what = format!("bytes {offset} + {length} lie outside buffer {buffer} of {}", bytes.len());
+                Err(self.invalid(object, what))
+            }
+        }
+    }
+}
+
+/// The crate's reading of a document that was completed first.
+fn parse_root(json: &[u8]) -> Result<(Root, Aside), ::gltf::json::Error> {
+    let mut value: Value = ::gltf::json::deserialize::from_slice(json)?;
+    let aside = complete(&mut value);
+    let root = ::gltf::json::deserialize::from_value(value).map_err(|error| {
+        // The text gives the line and column that the value no longer has.
+        let in_text = ::gltf::json::deserialize::from_slice::<Root>(json).err();
+        in_text.filter(|other| other.to_string().starts_with(&error.to_string())).unwrap_or(error)
+    })?;
+    Ok((root, aside))
 }
 
 /// A file that is not glTF 2.0 JSON; glTF 1.0 is told apart, for its arrays are objects.
@@ -96,19 +113,6 @@ fn old_version(file: &Path, version: &str) -> Error {
 
 fn check_version(file: &Path, version: &str) -> Result<(), Error> {
     if version.starts_with("2.") { Ok(()) } else { Err(old_version(file, version)) }
-}
-
-/// Refuses what is required and not done here, by name; warns of what is only used.
-fn check_extensions(file: &Path, root: &Root, report: &mut Report) -> Result<(), Error> {
-    let known = |name: &str| SUPPORTED.contains(&name);
-    if let Some(name) = root.extensions_required.iter().find(|name| !known(name)) {
-        let hint = HINTS.iter().find(|(n, _)| n == name).map_or("save the scene without it", |(_, hint)| hint);
-        return Err(Error::unsupported(file, "extensionsRequired", name.clone(), hint));
-    }
-    for name in root.extensions_used.iter().filter(|name| !known(name)) {
-        warn(report, "extensionsUsed", format!("{name} is not supported and was ignored"));
-    }
-    Ok(())
 }
 
 /// Attribute indices in range; the crate's own validation would panic on them.
@@ -161,6 +165,9 @@ fn fetch_buffers<'a>(
 ) -> Result<Vec<Cow<'a, [u8]>>, Error> {
     let fetch = |(b, buffer): (usize, &::gltf::json::Buffer)| {
         let object = format!("buffers[{b}]");
+        if meshopt::is_fallback(root, b) {
+            return Ok(Cow::Borrowed([].as_slice()));
+        }
         let bytes = match (&buffer.uri, binary) {
             (Some(uri), _) => Cow::Owned(fetch_buffer(file, &object, uri, folder)?),
             (None, Some(binary)) if b == 0 => Cow::Borrowed(binary),

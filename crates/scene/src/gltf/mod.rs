@@ -4,11 +4,22 @@
 //! read: index ranges in attributes, byte ranges of accessors, the node graph.
 
 mod accessor;
+mod complete;
 mod container;
 mod document;
+mod draco;
+mod extensions;
+mod instancing;
 mod material;
+mod meshopt;
+mod morph;
 mod node;
+mod place;
 mod primitive;
+mod skin;
+mod specular_glossiness;
+mod texture;
+mod view;
 
 use std::path::Path;
 
@@ -26,12 +37,12 @@ pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
     let folder = Folder::of(file);
     let mut report = Report::default();
     let document = Document::parse(file, json, binary, &folder, &mut report)?;
-    let (materials, textures) = material::read(&document, &folder, &mut report);
+    let (materials, textures) = material::read(&document, &folder, &mut report)?;
     let primitives = primitive::read_all(&document, materials.len() as u32 - 1, &mut report)?;
-    let placed = node::place(&document, &primitives, &mut report)?;
+    let placed = place::place(&document, &primitives, &mut report)?;
     Ok(Scene {
         name: file.display().to_string(),
-        origin: [0.0; 3],
+        origin: placed.origin.to_array(),
         meshes: placed.meshes,
         materials,
         textures,

@@ -1,42 +1,75 @@
-//! The node tree: instances of meshes, cameras and lights in world space.
+//! The node tree: what the nodes of the scene show, and where it stands.
 
-use ::gltf::json::camera::Camera as JsonCamera;
-use ::gltf::json::extensions::scene::khr_lights_punctual::{Light, Type};
 use ::gltf::json::scene::Node;
-use ::gltf::json::validation::Checked;
-use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
+use glam::{DMat4, DQuat, DVec3};
 
 use super::document::Document;
-use super::{MAX_ELEMENTS, warn};
-use crate::{Camera, Error, LightKind, Mesh, PunctualLight, Report};
+use super::{instancing, skin, warn};
+use crate::{Error, Report};
 
 /// Deepest node tree that is followed.
 const MAX_DEPTH: usize = 1024;
 
-/// What the nodes of the scene show.
-#[derive(Default)]
-pub(super) struct Placed {
-    pub(super) meshes: Vec<Mesh>,
-    pub(super) cameras: Vec<Camera>,
-    pub(super) lights: Vec<PunctualLight>,
-    pub(super) moving: Vec<String>,
-    elements: usize,
+/// With how many digits the transforms of nodes are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Precision {
+    /// Rounded to f32, as the crate reads them.
+    Single,
+    /// As written.
+    Double,
 }
 
-/// Walks the default scene (else the first, else all root nodes) and places what its nodes show.
-pub(super) fn place(document: &Document<'_>, primitives: &[Vec<Mesh>], report: &mut Report) -> Result<Placed, Error> {
+/// Where one mesh stands.
+pub(super) enum Pose {
+    /// `world from mesh`.
+    Rigid(DMat4),
+    /// `world from mesh` of each joint.
+    Skinned(Vec<DMat4>),
+}
+
+/// One mesh as a node shows it.
+pub(super) struct Shown {
+    pub(super) mesh: usize,
+    pub(super) node: Option<usize>,
+    pub(super) pose: Pose,
+}
+
+/// What the nodes of the scene show.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) meshes: Vec<Shown>,
+    /// Camera or light, by node.
+    pub(super) views: Vec<(usize, DMat4)>,
+    pub(super) lights: Vec<(usize, DMat4)>,
+    /// Names of nodes whose meshes some animation or skin moves.
+    pub(super) moving: Vec<String>,
+    pub(super) report: Report,
+    hidden: Vec<String>,
+}
+
+/// A node that waits to be met.
+struct Waiting {
+    node: usize,
+    world_from_parent: DMat4,
+    depth: usize,
+    visible: bool,
+}
+
+/// Walks the default scene (else the first, else all root nodes).
+pub(super) fn walk(document: &Document<'_>, precision: Precision) -> Result<Found, Error> {
     let root = &document.root;
     let parents = parents(document)?;
-    let scene = root.scene.map_or(0, |index| index.value());
-    let roots: Vec<usize> = match root.scenes.get(scene) {
-        Some(scene) => scene.nodes.iter().map(|index| index.value()).collect(),
-        None => (0..root.nodes.len()).filter(|&n| parents[n].is_none()).collect(),
-    };
-    let mut placed = Placed::default();
-    let mut stack: Vec<(usize, DMat4, usize)> = roots.into_iter().rev().map(|n| (n, DMat4::IDENTITY, 0)).collect();
+    let mut found = Found::default();
+    let roots = roots(document, &parents, &mut found.report);
+    let joints = if root.skins.is_empty() { Vec::new() } else { world(document, &parents, precision) };
+    let waiting = |&node: &usize| Waiting { node, world_from_parent: DMat4::IDENTITY, depth: 0, visible: true };
+    let mut stack: Vec<Waiting> = roots.iter().rev().map(waiting).collect();
     let mut seen = vec![false; root.nodes.len()];
-    let mut moved = animated(document);
-    while let Some((n, world_from_parent, depth)) = stack.pop() {
+    let mut moved = vec![false; root.nodes.len()];
+    for &n in &document.aside.animated {
+        moved.get_mut(n).into_iter().for_each(|moved| *moved = true);
+    }
+    while let Some(Waiting { node: n, world_from_parent, depth, visible }) = stack.pop() {
         if std::mem::replace(&mut seen[n], true) {
             return Err(document.invalid(format!("nodes[{n}]"), "appears twice in the scene"));
         }
@@ -44,35 +77,99 @@ pub(super) fn place(document: &Document<'_>, primitives: &[Vec<Mesh>], report: &
             return Err(document.invalid(format!("nodes[{n}]"), format!("lies more than {MAX_DEPTH} levels deep")));
         }
         let node = &root.nodes[n];
-        let world_from_node = world_from_parent * parent_from_node(document, n, node)?;
-        show(document, primitives, n, world_from_node, &mut placed, report)?;
-        if node.mesh.is_some() && (moved[n] || node.skin.is_some()) {
-            placed.moving.push(name_of(node, n));
+        let visible = visible && is_visible(node);
+        let world_from_node = world_from_parent * parent_from_node(document, n, precision)?;
+        found.meet(document, n, world_from_node, visible, &joints)?;
+        if visible && node.mesh.is_some() && (moved[n] || node.skin.is_some()) {
+            found.moving.push(name_of(document, n));
         }
         // What hangs on a moved node moves with it.
         node.children.iter().flatten().for_each(|child| moved[child.value()] |= moved[n]);
         let children = node.children.iter().flatten().rev();
-        stack.extend(children.map(|child| (child.value(), world_from_node, depth + 1)));
+        stack.extend(children.map(|child| Waiting {
+            node: child.value(),
+            world_from_parent: world_from_node,
+            depth: depth + 1,
+            visible,
+        }));
     }
-    if root.scenes.is_empty() && root.nodes.is_empty() && !primitives.is_empty() {
-        warn(report, "scenes", "no node shows a mesh; all meshes were placed as they are");
-        for (m, _) in primitives.iter().enumerate() {
-            placed.instance(document, &primitives[m], DMat4::IDENTITY, None)?;
+    for name in std::mem::take(&mut found.hidden) {
+        warn(&mut found.report, name, "is hidden (KHR_node_visibility) and was left out");
+    }
+    Ok(found)
+}
+
+/// Where walks begin.
+fn roots(document: &Document<'_>, parents: &[Option<usize>], report: &mut Report) -> Vec<usize> {
+    let root = &document.root;
+    let scene = root.scenes.get(root.scene.map_or(0, |index| index.value()));
+    match scene {
+        Some(scene) if !scene.nodes.is_empty() => return scene.nodes.iter().map(|index| index.value()).collect(),
+        Some(_) if !root.nodes.is_empty() => {
+            warn(report, "scenes", "the scene names no nodes; all root nodes were taken")
         }
+        _ => {}
     }
-    Ok(placed)
+    (0..root.nodes.len()).filter(|&n| parents[n].is_none()).collect()
 }
 
-/// Which nodes some animation moves or reshapes by itself.
-fn animated(document: &Document<'_>) -> Vec<bool> {
-    let mut moved = vec![false; document.root.nodes.len()];
-    let channels = document.root.animations.iter().flat_map(|animation| &animation.channels);
-    channels.for_each(|channel| moved[channel.target.node.value()] = true);
-    moved
+fn is_visible(node: &Node) -> bool {
+    let visibility = node.extensions.as_ref().and_then(|e| e.others.get("KHR_node_visibility"));
+    visibility.is_none_or(|json| json["visible"].as_bool() != Some(false))
 }
 
-fn name_of(node: &Node, n: usize) -> String {
-    node.name.clone().unwrap_or_else(|| format!("nodes[{n}]"))
+/// What a node is called.
+pub(super) fn name_of(document: &Document<'_>, n: usize) -> String {
+    document.root.nodes[n].name.clone().unwrap_or_else(|| format!("nodes[{n}]"))
+}
+
+impl Found {
+    /// Notes what one node shows; cameras see from hidden nodes too.
+    fn meet(
+        &mut self,
+        document: &Document<'_>,
+        n: usize,
+        world_from_node: DMat4,
+        visible: bool,
+        joints: &[Option<DMat4>],
+    ) -> Result<(), Error> {
+        let node = &document.root.nodes[n];
+        if let Some(mesh) = node.mesh.map(|mesh| mesh.value()) {
+            if visible {
+                self.show(document, n, mesh, world_from_node, joints)?;
+            } else {
+                self.hidden.push(name_of(document, n));
+            }
+        }
+        if node.camera.is_some() {
+            self.views.push((n, world_from_node));
+        }
+        let lit = node.extensions.as_ref().is_some_and(|e| e.khr_lights_punctual.is_some());
+        if visible && lit {
+            self.lights.push((n, world_from_node));
+        }
+        Ok(())
+    }
+
+    fn show(
+        &mut self,
+        document: &Document<'_>,
+        n: usize,
+        mesh: usize,
+        world_from_node: DMat4,
+        joints: &[Option<DMat4>],
+    ) -> Result<(), Error> {
+        let node = &document.root.nodes[n];
+        let mut add = |pose| self.meshes.push(Shown { mesh, node: Some(n), pose });
+        if let Some(skin) = node.skin {
+            add(Pose::Skinned(skin::joints(document, skin.value(), joints)?));
+        } else if let Some(copies) = instancing::transforms(document, n, node)? {
+            copies.into_iter().for_each(|copy| add(Pose::Rigid(world_from_node * copy)));
+        } else {
+            add(Pose::Rigid(world_from_node));
+        }
+        Ok(())
+    }
 }
 
 /// The parent of each node; refuses graphs that are not trees.
@@ -100,21 +197,42 @@ fn parents(document: &Document<'_>) -> Result<Vec<Option<usize>>, Error> {
     }
 }
 
-fn parent_from_node(document: &Document<'_>, n: usize, node: &Node) -> Result<DMat4, Error> {
-    let matrix = match node.matrix {
-        Some(m) => DMat4::from_cols_array(&m.map(f64::from)),
+/// `[node]`: world transform, in the scene or not; none where it or one above it is broken.
+fn world(document: &Document<'_>, parents: &[Option<usize>], precision: Precision) -> Vec<Option<DMat4>> {
+    let nodes = &document.root.nodes;
+    let mut world = vec![None; nodes.len()];
+    let roots = (0..nodes.len()).filter(|&n| parents[n].is_none());
+    let mut stack: Vec<(usize, DMat4)> = roots.map(|n| (n, DMat4::IDENTITY)).collect();
+    while let Some((n, world_from_parent)) = stack.pop() {
+        let Ok(local) = parent_from_node(document, n, precision) else { continue };
+        let world_from_node = world_from_parent * local;
+        world[n] = Some(world_from_node);
+        stack.extend(nodes[n].children.iter().flatten().map(|child| (child.value(), world_from_node)));
+    }
+    world
+}
+
+fn parent_from_node(document: &Document<'_>, n: usize, precision: Precision) -> Result<DMat4, Error> {
+    let node = &document.root.nodes[n];
+    let exact = document.aside.transforms.get(n).filter(|_| precision == Precision::Double);
+    let matrix = node.matrix.map(|m| exact.and_then(|t| t.matrix).unwrap_or(m.map(f64::from)));
+    let matrix = match matrix {
+        Some(matrix) => DMat4::from_cols_array(&matrix),
         None => {
-            let vector = |v: Option<[f32; 3]>, default| v.map_or(default, |v| Vec3::from(v).as_dvec3());
-            let [x, y, z, w] = node.rotation.unwrap_or_default().0.map(f64::from);
-            let rotation = DQuat::from_xyzw(x, y, z, w);
+            let vector = |single: Option<[f32; 3]>, double: Option<[f64; 3]>, default| {
+                double.or(single.map(|v| v.map(f64::from))).map_or(default, DVec3::from)
+            };
+            let rotation = node.rotation.unwrap_or_default().0.map(f64::from);
+            let rotation = DQuat::from_array(exact.and_then(|t| t.rotation).unwrap_or(rotation));
             let length = rotation.length();
             if !(length > 0.5 && length < 2.0) {
                 return Err(
                     document.invalid(format!("nodes[{n}].rotation"), format!("has length {length} instead of 1"))
                 );
             }
-            let scale = vector(node.scale, DVec3::ONE);
-            DMat4::from_scale_rotation_translation(scale, rotation.normalize(), vector(node.translation, DVec3::ZERO))
+            let scale = vector(node.scale, exact.and_then(|t| t.scale), DVec3::ONE);
+            let translation = vector(node.translation, exact.and_then(|t| t.translation), DVec3::ZERO);
+            DMat4::from_scale_rotation_translation(scale, rotation.normalize(), translation)
         }
     };
     let bottom = matrix.row(3).to_array();
@@ -123,123 +241,4 @@ fn parent_from_node(document: &Document<'_>, n: usize, node: &Node) -> Result<DM
         return Err(document.invalid(format!("nodes[{n}].matrix"), what));
     }
     Ok(matrix)
-}
-
-/// Places what one node shows.
-fn show(
-    document: &Document<'_>,
-    primitives: &[Vec<Mesh>],
-    n: usize,
-    world_from_node: DMat4,
-    placed: &mut Placed,
-    report: &mut Report,
-) -> Result<(), Error> {
-    let node = &document.root.nodes[n];
-    let name = name_of(node, n);
-    if let Some(mesh) = node.mesh {
-        if node.skin.is_some() {
-            warn(report, &name, "skinning is not applied; the mesh stands as modelled");
-        }
-        placed.instance(document, &primitives[mesh.value()], world_from_node, Some(&name))?;
-    }
-    if let Some(camera) = node.camera {
-        match view(&document.root.cameras[camera.value()], &name, world_from_node) {
-            Some(view) => placed.cameras.push(view),
-            None => warn(report, &name, "only perspective cameras are supported; this one was left out"),
-        }
-    }
-    let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()).map(|l| l.light.value());
-    let lights = document.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-    if let Some(light) = light.and_then(|l| lights?.lights.get(l)) {
-        placed.lights.extend(lamp(light, &name, world_from_node));
-        warn(report, &name, "a punctual light was read but is not baked; light comes from the probe");
-    }
-    Ok(())
-}
-
-impl Placed {
-    /// Adds one instance of a mesh's primitives.
-    fn instance(
-        &mut self,
-        document: &Document<'_>,
-        primitives: &[Mesh],
-        world_from_node: DMat4,
-        name: Option<&str>,
-    ) -> Result<(), Error> {
-        for primitive in primitives {
-            self.elements += primitive.positions.len().max(primitive.triangles.len());
-            if self.elements > MAX_ELEMENTS {
-                let what = format!("more than {MAX_ELEMENTS} vertices or triangles with all instances");
-                return Err(document.invalid("scene", what));
-            }
-            let mut mesh = primitive.clone();
-            if let Some(name) = name {
-                mesh.name = name.into();
-            }
-            transform(&mut mesh, world_from_node);
-            self.meshes.push(mesh);
-        }
-        Ok(())
-    }
-}
-
-/// Takes a mesh to world space; a mirrored one keeps its front by turning its triangles round.
-fn transform(mesh: &mut Mesh, world_from_node: DMat4) {
-    let linear = DMat3::from_mat4(world_from_node);
-    let mirrored = linear.determinant() < 0.0;
-    for position in &mut mesh.positions {
-        *position = world_from_node.transform_point3(position.as_dvec3()).as_vec3();
-    }
-    // The cofactor matrix is the inverse transpose times the determinant, and exists for flattened meshes too.
-    let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
-    let cofactor = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    let side = if mirrored { -1.0 } else { 1.0 };
-    for normal in mesh.normals.iter_mut() {
-        let given = normal.as_dvec3();
-        let turned = (cofactor * given).normalize_or_zero();
-        // The length says whether the file's normal was sound, so it is kept for the repair to judge.
-        *normal = (turned * (side * given.length())).as_vec3();
-    }
-    for tangent in mesh.tangents.iter_mut() {
-        let turned = (linear * tangent.truncate().as_dvec3()).normalize_or_zero().as_vec3();
-        *tangent = turned.extend(tangent.w * side as f32);
-    }
-    if mirrored {
-        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-    }
-}
-
-/// A perspective camera looks along its node's -z.
-fn view(camera: &JsonCamera, name: &str, world_from_node: DMat4) -> Option<Camera> {
-    let perspective = camera.perspective.as_ref()?;
-    let sound = perspective.yfov > 0.0 && perspective.yfov < std::f32::consts::PI;
-    let eye = world_from_node.w_axis.truncate();
-    let forward = (-world_from_node.z_axis.truncate()).try_normalize()?;
-    let up = world_from_node.y_axis.truncate().try_normalize()?;
-    sound.then(|| Camera {
-        name: camera.name.clone().unwrap_or_else(|| name.into()),
-        eye: eye.as_vec3(),
-        target: (eye + forward).as_vec3(),
-        up: up.as_vec3(),
-        vertical_fov: perspective.yfov,
-    })
-}
-
-/// A punctual light shines along its node's -z.
-fn lamp(light: &Light, name: &str, world_from_node: DMat4) -> Option<PunctualLight> {
-    let kind = match (&light.type_, &light.spot) {
-        (Checked::Valid(Type::Directional), _) => LightKind::Directional,
-        (Checked::Valid(Type::Point), _) => LightKind::Point,
-        (Checked::Valid(Type::Spot), Some(spot)) => {
-            LightKind::Spot { inner: spot.inner_cone_angle, outer: spot.outer_cone_angle }
-        }
-        _ => return None,
-    };
-    Some(PunctualLight {
-        name: light.name.clone().unwrap_or_else(|| name.into()),
-        kind,
-        position: world_from_node.w_axis.truncate().as_vec3(),
-        direction: (-world_from_node.z_axis.truncate()).try_normalize()?.as_vec3(),
-        intensity: Vec3::from(light.color) * light.intensity,
-    })
 }

@@ -25,7 +25,8 @@ use parse::{Content, Corner, Group, NONE};
 /// Reads an OBJ file; `bytes` are its content.
 pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
     let mut report = Report::default();
-    let content = parse::parse(file, &text::decode(bytes), &mut report)?;
+    let mut content = parse::parse(file, &text::decode(bytes), &mut report)?;
+    let origin = content.take_origin(&mut report);
     let folder = Folder::of(file);
     let library = library::read(&folder, file, &content.libraries, &mut report);
     let (materials, textures) = mtl::convert(&library.materials, &folder, &mut report);
@@ -47,7 +48,8 @@ pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
     }
     lacking.tell(&mut report);
     parse::warn_of_unknown(&unknown, &mut report);
-    let mut scene = Scene { name: file.display().to_string(), meshes, materials, textures, report, ..Scene::default() };
+    let name = file.display().to_string();
+    let mut scene = Scene { name, origin, meshes, materials, textures, report, ..Scene::default() };
     solid::mark_double_sided(&mut scene);
     Ok(scene)
 }

@@ -22,7 +22,9 @@ pub(super) fn convert(materials: &[Source], folder: &Folder, report: &mut Report
         base_color: Vec3::splat(DEFAULT_DIFFUSE).extend(1.0),
         ..Material::default()
     });
-    (converted, pictures.textures)
+    let Pictures { report, budget, textures, .. } = pictures;
+    report.warnings.extend(budget.into_notes());
+    (converted, textures)
 }
 
 /// What makes two textures one: the folder of the library, colour and coverage file, channel, clamping.

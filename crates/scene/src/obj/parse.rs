@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::text::{self, keyword, number, statements, words};
+use crate::origin::{self, Extent};
 use crate::warnings::listed;
 use crate::{Error, Report, Warning};
 
@@ -27,6 +28,20 @@ pub(super) struct Content {
     pub(super) groups: Vec<Group>,
     /// What follows each `mtllib`, once each.
     pub(super) libraries: Vec<String>,
+}
+
+impl Content {
+    /// Takes the common origin of far vertices off them, before they are rounded to f32.
+    pub(super) fn take_origin(&mut self, report: &mut Report) -> [f64; 3] {
+        let mut extent = Extent::new();
+        self.positions.iter().for_each(|position| extent.add(*position));
+        let origin = extent.common_origin();
+        if origin != DVec3::ZERO {
+            self.positions.iter_mut().for_each(|position| *position -= origin);
+            report.warnings.push(Warning { object: "scene".into(), message: origin::message(origin) });
+        }
+        origin.to_array()
+    }
 }
 
 /// Faces with one name and one material.

@@ -1,4 +1,5 @@
 //! glTF files as text, with their data in place.
+#![allow(dead_code, reason = "each test uses its part")]
 
 /// A data URI of some bytes, percent-encoded.
 pub(crate) fn data_uri(bytes: &[u8]) -> String {
