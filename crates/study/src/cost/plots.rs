@@ -2,7 +2,7 @@
 
 use super::recommend::Goal;
 use super::report::{Knob, Report, Run};
-use crate::plot::chart::{Chart, Corner, Label, Series, Unit};
+use crate::plot::chart::{Chart, Label, Series, Unit};
 
 /// The plots of a study.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,13 +32,12 @@ fn seconds(report: &Report) -> Chart {
     let named = chosen.into_iter().chain(ends).chain(report.fast_front.iter().copied());
     let label = |i: usize| Label { at: at(&report.runs[i]), text: report.runs[i].setting.clone() };
     Chart {
-        x: ("seconds of baking".into(), Unit::Seconds),
+        x: ("time of the bake".into(), Unit::Seconds),
         y: ("error that 95 % of receivers keep".into(), Unit::Share),
         series: kinds.into_iter().filter(|s| !s.points.is_empty()).collect(),
         front: report.fast_front.iter().map(|&i| at(&report.runs[i])).collect(),
         labels: once_each(named).into_iter().map(label).collect(),
         chosen: chosen.map(|i| at(&report.runs[i])),
-        legend: Corner::UpperRight,
     }
 }
 
@@ -47,14 +46,14 @@ fn bytes(report: &Report) -> Chart {
     let points = |wanted: &dyn Fn(&Run) -> bool| report.runs.iter().filter(|run| wanted(run)).map(at).collect();
     let series = [
         ("bands", points(&|run| run.knob == Knob::Bands)),
-        ("number format (reckoned)", points(&|run| run.knob == Knob::Format)),
+        ("number format (not in files)", points(&|run| run.knob == Knob::Format)),
         ("other knobs", points(&|run| !matches!(run.knob, Knob::Bands | Knob::Format))),
     ];
     let series = series.map(|(name, points): (&str, Vec<[f64; 2]>)| Series { name: name.into(), points });
     let chosen = report.advice.iter().find(|a| matches!(a.goal, Goal::Bytes(_))).map(|a| a.run);
     let label = |i: usize| Label { at: at(&report.runs[i]), text: size_words(&report.runs[i]) };
     Chart {
-        x: ("bytes of coefficients".into(), Unit::Bytes),
+        x: ("size of the coefficients".into(), Unit::Bytes),
         y: (format!("radiance: difference from {} bands", report.reference.bands), Unit::Share),
         series: series.into_iter().filter(|s| !s.points.is_empty()).collect(),
         front: report.small_front.iter().map(|&i| at(&report.runs[i])).collect(),
@@ -63,7 +62,6 @@ fn bytes(report: &Report) -> Chart {
             .map(label)
             .collect(),
         chosen: chosen.map(|i| at(&report.runs[i])),
-        legend: Corner::UpperRight,
     }
 }
 

@@ -1,7 +1,7 @@
 //! A plot of points over two logarithmic axes, with a front and a chosen point.
 
 use super::{Error, font, pixels::Pixels};
-use plotters::chart::{ChartBuilder, ChartContext, SeriesLabelPosition};
+use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::coord::combinators::{IntoLogRange, LogCoord};
@@ -10,10 +10,16 @@ use plotters::prelude::{
     BitMapBackend, DrawingArea, DrawingBackend, IntoDrawingArea, IntoFont, LineSeries, SVGBackend,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, RGBColor, ShapeStyle, TRANSPARENT, TextStyle};
+use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, TextStyle};
 
-/// Columns and rows of a plot.
-const SIZE: (u32, u32) = (680, 440);
+/// Columns and rows of a plot, its legend with it.
+const SIZE: (u32, u32) = (880, 440);
+/// Columns of the legend, which stands beside the plot.
+const LEGEND: u32 = 212;
+/// Rows between two lines of the legend.
+const LEGEND_STEP: i32 = 24;
+/// Most ticks of an axis: of more, only whole powers of ten stay.
+const MOST_TICKS: usize = 10;
 /// Colours that turn in the dark; nothing else is drawn in them.
 const INK: RGBColor = RGBColor(0x1b, 0x24, 0x30);
 const FAINT: RGBColor = RGBColor(0xdd, 0xe2, 0xe8);
@@ -45,15 +51,6 @@ pub enum Unit {
     Bytes,
     /// A share of one.
     Share,
-}
-
-/// Where the legend stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Corner {
-    /// Where what is dear and far off would be.
-    UpperRight,
-    /// Under the front, where nothing is unless the cheapest is the closest too.
-    LowerLeft,
 }
 
 /// Points of one kind.
@@ -89,8 +86,6 @@ pub struct Chart {
     pub labels: Vec<Label>,
     /// The point with a ring.
     pub chosen: Option<[f64; 2]>,
-    /// Where the legend stands.
-    pub legend: Corner,
 }
 
 type Plane = Cartesian2d<LogCoord<f64>, LogCoord<f64>>;
@@ -128,57 +123,97 @@ impl Chart {
         let [[left, right], [low, high]] = [self.range(0), self.range(1)];
         let mut chart = ChartBuilder::on(root)
             .margin(12)
-            .margin_right(20)
+            .margin_right(20 + LEGEND)
             .x_label_area_size(46)
             .y_label_area_size(66)
             .build_cartesian_2d((left..right).log_scale(), (low..high).log_scale())
             .map_err(|e| e.to_string())?;
-        self.draw_mesh(&mut chart)?;
+        self.draw_axes(&chart, root)?;
         let front = self.front.iter().map(|&p| self.place(p));
-        chart
-            .draw_series(LineSeries::new(front, FRONT.stroke_width(2)))
-            .map_err(|e| e.to_string())?
-            .label("front: nothing beats these")
-            .legend(|(x, y)| PathElement::new([(x - 7, y), (x + 7, y)], FRONT.stroke_width(2)));
+        chart.draw_series(LineSeries::new(front, FRONT.stroke_width(2))).map_err(|e| e.to_string())?;
         for (kind, series) in self.series.iter().enumerate() {
             self.draw_points(&mut chart, kind, series)?;
         }
         if let Some(at) = self.chosen {
             let ring = Circle::new(self.place(at), 11, CHOSEN.stroke_width(3));
-            let drawn = chart.draw_series([ring]).map_err(|e| e.to_string())?;
-            drawn.label("recommended").legend(|(x, y)| Circle::new((x, y), 6, CHOSEN.stroke_width(3)));
+            chart.draw_series([ring]).map_err(|e| e.to_string())?;
         }
         self.draw_words(&chart, root)?;
-        chart
-            .configure_series_labels()
-            .position(match self.legend {
-                Corner::UpperRight => SeriesLabelPosition::UpperRight,
-                Corner::LowerLeft => SeriesLabelPosition::LowerLeft,
-            })
-            .background_style(TRANSPARENT)
-            .border_style(TRANSPARENT)
-            .label_font(words(HPos::Left))
-            .draw()
-            .map_err(|e| e.to_string())
+        self.draw_legend(root)
     }
 
-    fn draw_mesh<DB: DrawingBackend>(&self, chart: &mut ChartContext<'_, DB, Plane>) -> Result<(), String> {
-        let ((x, x_unit), (y, y_unit)) = (&self.x, &self.y);
-        chart
-            .configure_mesh()
-            .x_desc(x)
-            .y_desc(y)
-            .x_labels(8)
-            .y_labels(8)
-            .x_label_formatter(&|v| x_unit.write(*v))
-            .y_label_formatter(&|v| y_unit.write(*v))
-            .bold_line_style(FAINT.stroke_width(1))
-            .light_line_style(TRANSPARENT)
-            .axis_style(FAINT.stroke_width(1))
-            .label_style(words(HPos::Center))
-            .axis_desc_style(words(HPos::Center))
-            .draw()
-            .map_err(|e| e.to_string())
+    /// Lines and numbers at 1, 2 and 5 times the powers of ten, in one unit an axis, and the names of the axes.
+    fn draw_axes<DB: DrawingBackend>(
+        &self,
+        chart: &ChartContext<'_, DB, Plane>,
+        root: &DrawingArea<DB, Shift>,
+    ) -> Result<(), String> {
+        let ranges = [self.range(0), self.range(1)];
+        let [[left, right], [low, high]] = ranges;
+        let line = |ends: [(f64, f64); 2]| {
+            let ends = ends.map(|end| chart.backend_coord(&end));
+            root.draw(&PathElement::new(ends.to_vec(), FAINT.stroke_width(1))).map_err(|e| e.to_string())
+        };
+        for (axis, (name, unit)) in [&self.x, &self.y].into_iter().enumerate() {
+            let (one, suffix) = unit.of_axis(ranges[axis]);
+            for tick in ticks(ranges[axis].map(|end| end / one)) {
+                let text = digits(tick);
+                let (place, at, side) = if axis == 0 {
+                    line([(tick * one, low), (tick * one, high)])?;
+                    let (x, y) = chart.backend_coord(&(tick * one, low));
+                    (text, (x, y + 14), HPos::Center)
+                } else {
+                    line([(left, tick * one), (right, tick * one)])?;
+                    let (x, y) = chart.backend_coord(&(left, tick * one));
+                    (text, (x - 8, y), HPos::Right)
+                };
+                root.draw(&Text::new(place, at, words(side))).map_err(|e| e.to_string())?;
+            }
+            let name = if suffix.is_empty() { name.clone() } else { format!("{name} ({suffix})") };
+            let (middle, style) = if axis == 0 {
+                let plot = (SIZE.0 - LEGEND) as i32;
+                ((plot / 2 + 33, SIZE.1 as i32 - 14), words(HPos::Center))
+            } else {
+                ((14, SIZE.1 as i32 / 2 - 23), words(HPos::Center).transform(FontTransform::Rotate270))
+            };
+            root.draw(&Text::new(name, middle, style)).map_err(|e| e.to_string())?;
+        }
+        line([(left, low), (right, low)])?;
+        line([(left, low), (left, high)])
+    }
+
+    /// What the marks mean, beside the plot.
+    fn draw_legend<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>) -> Result<(), String> {
+        let left = (SIZE.0 - LEGEND) as i32 + 14;
+        let mut y = 24;
+        let mut write = |text: &str| {
+            let drawn = root.draw(&Text::new(text.to_owned(), (left + 18, y), words(HPos::Left)));
+            y += LEGEND_STEP;
+            drawn.map_err(|e| e.to_string())
+        };
+        let row = |index: usize| 24 + LEGEND_STEP * index as i32;
+        if !self.front.is_empty() {
+            let ends = vec![(left - 7, row(0)), (left + 7, row(0))];
+            root.draw(&PathElement::new(ends, FRONT.stroke_width(2))).map_err(|e| e.to_string())?;
+            write("front: nothing beats these")?;
+        }
+        let first = usize::from(!self.front.is_empty());
+        for (kind, series) in self.series.iter().enumerate() {
+            let (at, style) = ((left, row(first + kind)), COLOURS[kind % COLOURS.len()].filled());
+            match kind % 3 {
+                0 => root.draw(&Circle::new(at, 5, style)),
+                1 => root.draw(&square(at, style)),
+                _ => root.draw(&diamond(at, style)),
+            }
+            .map_err(|e| e.to_string())?;
+            write(&series.name)?;
+        }
+        if self.chosen.is_some() {
+            let at = (left, row(first + self.series.len()));
+            root.draw(&Circle::new(at, 6, CHOSEN.stroke_width(3))).map_err(|e| e.to_string())?;
+            write("recommended")?;
+        }
+        Ok(())
     }
 
     /// Draws the points of a kind; kinds differ in shape as well as in colour.
@@ -195,13 +230,7 @@ impl Chart {
             1 => chart.draw_series(points.map(|p| EmptyElement::at(p) + square((0, 0), style))),
             _ => chart.draw_series(points.map(|p| EmptyElement::at(p) + diamond((0, 0), style))),
         };
-        let drawn = drawn.map_err(|e| e.to_string())?.label(&series.name);
-        match kind % 3 {
-            0 => drawn.legend(move |at| Circle::new(at, 5, style)),
-            1 => drawn.legend(move |at| square(at, style)),
-            _ => drawn.legend(move |at| diamond(at, style)),
-        };
-        Ok(())
+        drawn.map(drop).map_err(|e| e.to_string())
     }
 
     /// Writes the labels that have room beside their points.
@@ -210,26 +239,34 @@ impl Chart {
         chart: &ChartContext<'_, DB, Plane>,
         root: &DrawingArea<DB, Shift>,
     ) -> Result<(), String> {
-        let mut taken: Vec<[i32; 4]> = Vec::new();
+        let mut taken = self.marks(chart);
         for label in &self.labels {
-            let (x, y) = chart.backend_coord(&self.place(label.at));
+            let at = chart.backend_coord(&self.place(label.at));
             let width = LETTER.1 * label.text.chars().count() as i32;
-            let places = [(x + 10, y - 12), (x + 10, y + 12), (x - 10 - width, y - 12), (x - 10 - width, y + 12)];
-            let free = places.into_iter().find(|&(left, middle)| {
-                let inside =
-                    left > 70 && left + width < SIZE.0 as i32 - 10 && middle > 12 && middle < SIZE.1 as i32 - 56;
-                let apart = |b: &[i32; 4]| {
-                    left + width < b[0] || b[1] < left || middle + LETTER.0 / 2 < b[2] || b[3] < middle - LETTER.0 / 2
-                };
-                inside && taken.iter().all(apart)
-            });
-            if let Some((left, middle)) = free {
-                taken.push([left, left + width, middle - LETTER.0 / 2, middle + LETTER.0 / 2]);
-                let text = Text::new(label.text.clone(), (left, middle), words(HPos::Left));
+            if let Some(frame) =
+                places(at, width).into_iter().find(|frame| is_inside(*frame) && is_free(*frame, &taken))
+            {
+                taken.push(frame);
+                let [left, _, top, bottom] = frame;
+                let text = Text::new(label.text.clone(), (left, (top + bottom) / 2), words(HPos::Left));
                 root.draw(&text).map_err(|e| e.to_string())?;
             }
         }
         Ok(())
+    }
+
+    /// Frames around all points and along the front, on which no word may lie.
+    fn marks<DB: DrawingBackend>(&self, chart: &ChartContext<'_, DB, Plane>) -> Vec<[i32; 4]> {
+        let around = |(x, y): (i32, i32), size: i32| [x - size, x + size, y - size, y + size];
+        let pixel = |p: &[f64; 2]| chart.backend_coord(&self.place(*p));
+        let points = self.series.iter().flat_map(|series| &series.points).map(|p| around(pixel(p), 6));
+        let ring = self.chosen.iter().map(|p| around(pixel(p), 13));
+        let steps = self.front.windows(2).flat_map(|ends| {
+            let [a, b] = [pixel(&ends[0]), pixel(&ends[1])];
+            let count = ((b.0 - a.0).abs().max((b.1 - a.1).abs()) / 6).max(1);
+            (0..=count).map(move |i| around((a.0 + (b.0 - a.0) * i / count, a.1 + (b.1 - a.1) * i / count), 2))
+        });
+        points.chain(ring).chain(steps).collect()
     }
 
     /// The range of an axis: all values above 0, with room around them.
@@ -237,9 +274,7 @@ impl Chart {
         let all = self.series.iter().flat_map(|s| &s.points).chain(&self.front).map(|p| p[axis]);
         let sound = all.filter(|v| *v > 0.0 && v.is_finite());
         let (low, high) = sound.fold((f64::INFINITY, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
-        // A legend below the front has room of its own.
-        let below = if axis == 1 && self.legend == Corner::LowerLeft { 5.0 } else { 1.6 };
-        if low > high { [1e-3, 1.0] } else { [low / below, high * 1.6] }
+        if low > high { [1e-3, 1.0] } else { [low / 1.6, high * 1.6] }
     }
 
     /// A point within the ranges; what is 0 stands at the end.
@@ -250,6 +285,44 @@ impl Chart {
         };
         (within(0), within(1))
     }
+}
+
+/// Frames of words beside a point, the best first: left, right, top, bottom.
+fn places((x, y): (i32, i32), width: i32) -> Vec<[i32; 4]> {
+    let high = LETTER.0 / 2 + 1;
+    let mut frames = Vec::new();
+    for away in [15, 28] {
+        for up in [-away, away] {
+            for left in [x + 8, x - 8 - width, x - width / 2] {
+                frames.push([left, left + width, y + up - high, y + up + high]);
+            }
+        }
+    }
+    frames.push([x + 14, x + 14 + width, y - high, y + high]);
+    frames.push([x - 14 - width, x - 14, y - high, y + high]);
+    frames
+}
+
+/// Whether a frame lies within the plot.
+fn is_inside([left, right, top, bottom]: [i32; 4]) -> bool {
+    left > 80 && right < (SIZE.0 - LEGEND) as i32 - 6 && top > 8 && bottom < SIZE.1 as i32 - 60
+}
+
+/// Whether a frame keeps clear of others.
+fn is_free(frame: [i32; 4], taken: &[[i32; 4]]) -> bool {
+    let apart = |b: &[i32; 4]| frame[1] < b[0] || b[1] < frame[0] || frame[3] < b[2] || b[3] < frame[2];
+    taken.iter().all(apart)
+}
+
+/// 1, 2 and 5 times the powers of ten within a range above 0.
+fn ticks([low, high]: [f64; 2]) -> Vec<f64> {
+    let powers = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
+    let of = |factors: &[f64]| -> Vec<f64> {
+        let all = powers.clone().flat_map(|power| factors.iter().map(move |factor| factor * 10f64.powi(power)));
+        all.filter(|tick| (low..=high).contains(tick)).collect()
+    };
+    let fine = of(&[1.0, 2.0, 5.0]);
+    if fine.len() <= MOST_TICKS { fine } else { of(&[1.0]) }
 }
 
 fn square((x, y): (i32, i32), style: ShapeStyle) -> Rectangle<(i32, i32)> {
@@ -269,6 +342,21 @@ fn fault(reason: String) -> Error {
 }
 
 impl Unit {
+    /// The one unit of an axis of that range, and how it is called.
+    fn of_axis(self, [low, high]: [f64; 2]) -> (f64, &'static str) {
+        match self {
+            Self::Seconds if high < 1.0 => (1e-3, "ms"),
+            Self::Seconds if low > 120.0 => (60.0, "min"),
+            Self::Seconds => (1.0, "s"),
+            Self::Share => (0.01, "%"),
+            Self::Bytes => {
+                let middle = (low * high).sqrt();
+                let power = ((middle.max(1.0).log2() / 10.0) as usize).min(4);
+                (1024f64.powi(power as i32), ["B", "KiB", "MiB", "GiB", "TiB"][power])
+            }
+        }
+    }
+
     /// A value as people write it.
     #[must_use]
     pub fn write(self, value: f64) -> String {
@@ -310,7 +398,6 @@ mod tests {
             front: vec![[0.1, 0.1], [1.0, 0.02], [9.0, 0.0]],
             labels: vec![Label { at: [1.0, 0.02], text: "--rays 256".into() }],
             chosen: Some([1.0, 0.02]),
-            legend: Corner::UpperRight,
         }
     }
 
@@ -339,6 +426,28 @@ mod tests {
     fn a_plot_of_nothing_is_empty_but_a_plot() {
         let empty = Chart { series: vec![], front: vec![], labels: vec![], chosen: None, ..chart() };
         assert!(empty.svg().unwrap().contains("</svg>"));
+    }
+
+    #[test]
+    fn axes_have_one_unit_and_ticks_of_1_2_5() {
+        assert_eq!(ticks([0.4, 12.0]), [0.5, 1.0, 2.0, 5.0, 10.0]);
+        assert_eq!(ticks([1e-3, 1e3]), [1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0, 1000.0]);
+        assert_eq!(Unit::Seconds.of_axis([0.01, 0.5]), (1e-3, "ms"));
+        assert_eq!(Unit::Seconds.of_axis([0.5, 500.0]), (1.0, "s"));
+        assert_eq!(Unit::Bytes.of_axis([1e5, 1e6]), (1024.0, "KiB"));
+        let svg = chart().svg().unwrap();
+        assert!(svg.contains("time of the bake (s)") && svg.contains("error (%)"), "{svg}");
+    }
+
+    /// No word of the plot lies on a point or on another word, and the legend keeps out of the plot.
+    #[test]
+    fn words_keep_clear_of_points() {
+        let taken = [[100, 112, 100, 112], [100, 112, 130, 142]];
+        let free =
+            places((106, 106), 70).into_iter().find(|frame| is_inside(*frame) && is_free(*frame, &taken)).unwrap();
+        assert!(is_free(free, &taken));
+        assert!(!is_free([90, 160, 98, 114], &taken), "can fail: words upon the point");
+        assert!(!is_inside([600, 700, 100, 116]), "can fail: words upon the legend");
     }
 
     #[test]

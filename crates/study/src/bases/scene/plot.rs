@@ -2,7 +2,7 @@
 
 use super::{Comparison, ENCODINGS};
 use crate::front::front;
-use crate::plot::chart::{Chart, Corner, Label, Series, Unit};
+use crate::plot::chart::{Chart, Label, Series, Unit};
 use std::ops::Range;
 
 /// The encodings that are shown: all but f32, which takes twice the bytes of f16 for the same error.
@@ -33,8 +33,6 @@ impl Comparison {
             front: best.iter().map(|&pair| at(pair)).collect(),
             labels: self.labelled(chosen, &best).map(|(pair, text)| Label { at: at(pair), text }).collect(),
             chosen: Some(at(chosen)),
-            // A light map that is exact is the cheapest and the closest at once.
-            legend: if self.has_normal_maps { Corner::LowerLeft } else { Corner::UpperRight },
         }
     }
 

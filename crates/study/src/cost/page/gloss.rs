@@ -62,6 +62,6 @@ fn ways(gloss: &GlossStudy) -> String {
     let rows: String = gloss.ways.iter().map(cell).collect();
     format!(
         "<p>Time of a picture by way: triple products (tp) and the matrix of the light (tpfl) where gloss is drawn, or kept per light (cache). {chosen}</p>\n\
-         <table>\n<thead><tr><th>gloss at</th><th>way</th><th>light</th><th>picture</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"
+         <div class=\"wide\"><table>\n<thead><tr><th>gloss at</th><th>way</th><th>light</th><th>picture</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
     )
 }
