@@ -161,7 +161,7 @@ impl Chart {
                 let (place, at, side) = if axis == 0 {
                     line([(tick * one, low), (tick * one, high)])?;
                     let (x, y) = chart.backend_coord(&(tick * one, low));
-                    (text, (x, y + 14), HPos::Center)
+                    (text, (x, y + 16), HPos::Center)
                 } else {
                     line([(left, tick * one), (right, tick * one)])?;
                     let (x, y) = chart.backend_coord(&(left, tick * one));
