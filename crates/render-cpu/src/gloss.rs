@@ -170,8 +170,10 @@ impl Gloss {
         }
         let (open, reflected) = (received.w, light.along(ray.mirrored, ray.roughness));
         let kept = (SHARPNESS * (1.0 - open)).min(1.0);
-        let mirrored = kept * received.truncate() + open * (reflected - kept * self.held(&aimed));
-        mirrored.max(Vec3::ZERO)
+        let beyond = received.truncate() - open * self.held(&aimed);
+        // What surfaces send counts in full; no more than they can be thought to send, lest bands ring about lamps.
+        let sent = beyond.clamp(Vec3::ZERO, ray.scattered * (1.0 - open));
+        (open * reflected + kept * beyond + (1.0 - kept) * sent).max(Vec3::ZERO)
     }
 }
 
@@ -183,6 +185,8 @@ pub(crate) struct Ray {
     /// Unit normal without the normal map.
     pub(crate) smooth: Vec3,
     pub(crate) roughness: f32,
+    /// Diffuse radiance for albedo 1, not negative: the mean of what arrives.
+    pub(crate) scattered: Vec3,
 }
 
 /// The prefiltered probe, turned.

@@ -206,7 +206,7 @@ impl Shader<'_> {
         let (radiance, roughness) = match (self.gloss, arrived) {
             (Some(gloss), Some(arrived)) => {
                 let roughness = gloss.roughness(finish.roughness);
-                let ray = Ray { mirrored, smooth: self.smooth(place), roughness };
+                let ray = Ray { mirrored, smooth: self.smooth(place), roughness, scattered: finish.scattered };
                 (gloss.mirrored(&ray, &light, arrived), roughness)
             }
             _ => (self.half_open(place, &light, mirrored, finish), finish.roughness),

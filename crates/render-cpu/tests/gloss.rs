@@ -65,10 +65,12 @@ fn a_furnace_half_blocked_by_white_surfaces_is_still_one() {
             [&closed, &leaking].map(|prt| Renderer::without_window(prt, &sky).expect("a sound scene"));
         let all = Lobe::ALL.into_iter().flat_map(|lobe| ROUGHNESSES.map(|roughness| (lobe, roughness)));
         for (lobe, roughness) in all {
-            let error = furnace_error(&closed, lobe, roughness, false);
-            let lost = furnace_error(&leaking, lobe, roughness, false);
-            assert!(error < 1e-3, "{storage:?} {lobe:?} {roughness}: {error}");
-            assert!(lost > 0.05, "what is blocked must be missed: {lost}");
+            for tail in [false, true] {
+                let error = furnace_error(&closed, lobe, roughness, tail);
+                let lost = furnace_error(&leaking, lobe, roughness, tail);
+                assert!(error < 1e-3, "{storage:?} {lobe:?} {roughness} {tail}: {error}");
+                assert!(lost > 0.05, "what is blocked must be missed: {lost}");
+            }
         }
     }
 }
@@ -124,13 +126,23 @@ fn integral(
         .into_iter()
         .map(|(direction, weight)| weight * kept(&factors, mirrored, DVec3::from(direction)))
         .sum();
+    // The wall's diffuse light has two bands.
+    let two = light.truncated(Bands::new(2).expect("a number of bands"));
+    let mut lit = [0.0; 3];
+    for (direction, weight) in band_quadrature(0.0, 1.0, 24) {
+        let source = turn.inverse() * DVec3::from(direction).as_vec3();
+        let weight = weight * direction[2] / std::f64::consts::PI;
+        lit.iter_mut().zip(two.reconstruct(source)).for_each(|(sum, x)| *sum += weight * f64::from(x));
+    }
     let blurred = tail.map(|tail| tail.sample(turn.inverse() * mirrored.as_vec3(), roughness));
     let share = share(roughness, pixel, SIZE);
     std::array::from_fn(|c| {
         let (visible, bands) = ((open / energy).clamp(0.0, 1.0), (both[c] / energy).max(0.0));
         let light = blurred.map_or(bands, |blurred| {
             let closing = (4.0 * (1.0 - visible)).min(1.0);
-            (closing * bands + visible * (f64::from(blurred[c]) - closing * held[c])).max(0.0)
+            let beyond = bands - visible * held[c];
+            let sent = beyond.min((1.0 - visible) * lit[c].max(0.0)).max(0.0);
+            (visible * f64::from(blurred[c]) + closing * beyond + (1.0 - closing) * sent).max(0.0)
         });
         light * f64::from(share[c])
     })

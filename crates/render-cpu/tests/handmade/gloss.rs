@@ -1,6 +1,6 @@
 //! Walls that face +z and shine, from vertices or from texels, with tables that are written out.
 
-use super::{Y0, camera, wall, white};
+use super::{Y0, camera, open_transfer, wall, white};
 use coeff_io::{
     Arriving, Bounced, Gloss, GlossView, Material, Prt, Table, TransferLevel, TransferSheet, TransferTextures,
     VertexGloss,
@@ -100,7 +100,7 @@ pub(crate) fn same_everywhere(
     let vertices = match storage {
         Storage::Vertices => Some(VertexGloss { first_row: vec![Some(0)], arriving }),
         Storage::Texels => {
-            let diffuse = Table::exact(4, &[0.0; 4]);
+            let diffuse = Table::exact(4, &open_transfer(Vec3::Z));
             lay_on(
                 &mut prt,
                 vec![TransferLevel { width: 1, height: 1, places: vec![0], diffuse, arriving: Some(arriving) }],
