@@ -80,3 +80,34 @@ fn mirrors_light_their_surroundings() {
     dark.materials.last_mut().unwrap().base_color = Vec3::ZERO.extend(1.0);
     assert!((mean(&drawn(&dark)) / mean(&truth) - 1.0).abs() > 0.05, "can fail: a black block");
 }
+
+/// The Cornell box of smooth dielectrics, with or without a block of metal.
+fn polished(metal: bool) -> Scene {
+    let mut scene = if metal { scene(0.5) } else { scene::builtin("cornell-box").expect("a built-in scene") };
+    let dielectrics = scene.materials.iter_mut().filter(|material| material.metallic == 0.0);
+    dielectrics.for_each(|material| material.roughness = 0.4);
+    scene
+}
+
+/// Coloured walls that shine, by openness and by direction, with the tail and without: no energy is won or lost against paths.
+#[test]
+fn a_polished_room_keeps_its_energy() {
+    let light = light();
+    for glossy in [false, true] {
+        let scene = polished(glossy);
+        let mut shot = view(Lobe::Ggx, 0.5);
+        shot.view.roughness = None;
+        let mean = |picture: &[[f32; 3]]| picture.as_flattened().iter().sum::<f32>();
+        let truth = mean(&traced(&scene, &light, &shot, (PATHS, 2, false)).picture());
+        let prt = baked(&scene, &Recipe { glossy, ..fine() }, None);
+        for tail in [false, true] {
+            shot.view.tail = tail;
+            let share = mean(&drawn(&prt, &light, &shot)) / truth;
+            assert!((share - 1.0).abs() < 0.015, "gloss by direction {glossy}, tail {tail}: {share}");
+        }
+        let mut matte = prt.clone();
+        matte.materials.iter_mut().for_each(|material| material.specular = false);
+        let share = mean(&drawn(&matte, &light, &shot)) / truth;
+        assert!((share - 1.0).abs() > 0.015, "can fail: what is mirrored is left out: {share}");
+    }
+}

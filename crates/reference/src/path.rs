@@ -81,7 +81,10 @@ fn scatter(
         Step::Sky => {
             let (radiance, light_pdf) = light.image.look(direction);
             let pdf = cosine_concentric_pdf(local);
-            path.sum += path.throughput * radiance * (pdf / (pdf + light_pdf));
+            // Along the horizon both densities may be 0.
+            if pdf > 0.0 {
+                path.sum += path.throughput * radiance * (pdf / (pdf + light_pdf));
+            }
             None
         }
         Step::Surface(next) => Some(next),

@@ -209,22 +209,10 @@ impl Shader<'_> {
                 let ray = Ray { mirrored, smooth: self.smooth(place), roughness, scattered: finish.scattered };
                 (gloss.mirrored(&ray, &light, arrived), roughness)
             }
-            _ => (self.half_open(place, &light, mirrored, finish), finish.roughness),
+            _ => (light.along(mirrored, finish.roughness) * self.occlusion(place), finish.roughness),
         };
         let cosine = cosine.abs().min(1.0);
         (radiance * reflectance(finish.color, finish.metallic, roughness, cosine), 1.0 - diffuse_loss(cosine))
-    }
-
-    /// What arrives about the mirror direction where no more is known than how open the surface is: the probe by its open share, and of
-    /// the rest what diffuse light has more than the open share of the probe gives, up to its mean.
-    fn half_open(&self, place: &Place<'_>, light: &Reflected<'_>, mirrored: Vec3, finish: &Finish) -> Vec3 {
-        let open = self.occlusion(place);
-        let sky = light.along(mirrored, finish.roughness) * open;
-        if open >= 1.0 {
-            return sky;
-        }
-        let beyond = finish.scattered - light.along(self.smooth(place), 1.0) * open;
-        sky + beyond.clamp(Vec3::ZERO, finish.scattered * (1.0 - open))
     }
 
     fn occlusion(&self, place: &Place<'_>) -> f32 {

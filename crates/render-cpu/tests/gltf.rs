@@ -2,11 +2,11 @@
 
 mod handmade;
 
-use coeff_io::{Material, Prt};
+use coeff_io::Material;
 use handmade::gloss::{SIZE, STORAGES, belt, front, same_everywhere, to_eye};
 use handmade::{wall, white};
 use probe_io::Environment;
-use render_cpu::{Renderer, render};
+use render_cpu::render;
 use testkit::gltf::Surface;
 
 const ROUGHNESSES: [f32; 5] = [0.0, 0.2, 0.4, 0.7, 1.0];
@@ -59,28 +59,4 @@ fn a_diffuse_part_that_keeps_all_can_fail() {
     let picture = render(&prt, &sky, &front(SIZE)).expect("a picture").linear;
     let all: Vec<[f32; 3]> = picture.iter().map(|seen| seen.map(|x| x + 0.041)).collect();
     assert!(apart(&all, surface(1.0, 0.0, 0.4)) > 5.0 * BOUND);
-}
-
-/// A wall of which the share `open` sees the sky and surfaces fill the rest, `lit` of diffuse radiance.
-fn half_open(material: Material, open: f32, lit: f32) -> Prt {
-    let mut prt = wall(material);
-    prt.transfer.openness = vec![open; prt.geometry.positions.len()];
-    prt.transfer.values.iter_mut().for_each(|value| *value *= lit);
-    prt
-}
-
-/// Where no more is known than how open a surface is: white surroundings are mirrored, black ones are not, none makes light.
-#[test]
-fn surroundings_are_mirrored_as_bright_as_they_light() {
-    let sky = Environment::constant([1.0; 3]);
-    for material in [shiny(0.5, 0.0, 0.4), shiny(0.8, 1.0, 0.6)] {
-        let draw = |prt: &Prt| Renderer::new(prt, &sky).expect("a sound scene").draw(&front(SIZE)).expect("a picture");
-        let centre = |prt: &Prt| draw(prt).linear[(SIZE / 2 * SIZE + SIZE / 2) as usize][0];
-        let whole = centre(&wall(material.clone()));
-        let white = centre(&half_open(material.clone(), 0.3, 1.0));
-        let black = centre(&half_open(material.clone(), 0.3, 0.3));
-        assert!((white - whole).abs() < 1e-3 * whole, "white surroundings vanish: {white} {whole}");
-        assert!((black - 0.3 * whole).abs() < 1e-3 * whole, "black ones leave the open share: {black} {whole}");
-        assert!(centre(&half_open(material, 0.3, 0.65)) < 0.7 * whole, "can fail: grey ones lie between");
-    }
 }

@@ -185,8 +185,6 @@ fn metals_shine_without_a_body_and_only_where_the_plan_says_so() {
     assert!(distance(centre(&wall(metal.clone())), expected) < 2e-3);
     let mut prt = wall(metal);
     prt.transfer.openness = vec![0.5; prt.geometry.positions.len()];
-    assert!(distance(centre(&prt), expected) < 2e-3, "half of the sky is hidden by what is as bright");
-    prt.transfer.values.iter_mut().for_each(|value| *value *= 0.5);
     assert!(distance(centre(&prt), expected.map(|x| 0.5 * x)) < 2e-3, "half of the sky is hidden");
 }
 
