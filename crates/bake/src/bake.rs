@@ -1,15 +1,15 @@
 //! The bake: plan, first pass, backs, repair, bounces, file.
 
+mod bounce;
+
 use crate::account::account;
-use crate::arrival::radiance;
 use crate::bundle::{Baked, bundle};
 use crate::directions::DirectionBank;
 use crate::extras::{Done, Extras, FixedLight};
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer};
-use crate::gloss::fixed;
 use crate::mirror::Mirrors;
-use crate::passes::{Chunk, Monitor, bounce_pass, gather_pass};
+use crate::passes::{Chunk, Monitor, gather_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::{Progress, Stage};
 use crate::receivers::Receivers;
@@ -328,48 +328,6 @@ impl<'a> Run<'a> {
         Ok(chunks)
     }
 
-    /// Bounces until the count asked for, or until what is still to come is below the tolerance.
-    fn bounce(&mut self, chunks: &[Chunk], repair: &Repair, transfer: &mut Field) -> Result<(), Error> {
-        let limit = match self.settings.bounces {
-            Bounces::Fixed(n) => n,
-            // What comes after these cannot matter; they end sooner where measured to.
-            Bounces::Auto => self.plan.bounces,
-        };
-        let mut before = 1.0;
-        for n in 1..=limit {
-            let mut next = bounce_pass(&self.gatherer, &self.receivers, chunks, &self.last, n, &self.monitor)?;
-            if let Some(mut glints) = self.glints.take_if(|_| n == 1) {
-                glints.grow(self.receivers.list.len());
-                next.add(&glints);
-            }
-            repair.apply(&mut next);
-            transfer.add(&next);
-            let change = self.largest_norm(&next);
-            self.achieved.bounces = n;
-            self.achieved.bounce_changes.push(change as f32);
-            self.last = next;
-            // What the last bounce leaves behind nobody receives.
-            if self.settings.bounces != Bounces::Fixed(n) {
-                self.note_radiance();
-            }
-            if self.settings.bounces == Bounces::Auto
-                && still_to_come(change, before) <= f64::from(tolerance(self.settings.quality))
-            {
-                break;
-            }
-            before = change;
-        }
-        Ok(())
-    }
-
-    /// Keeps the radiance of the last bounce under the light that goes into gloss.
-    fn note_radiance(&mut self) {
-        if let Some(light) = self.light.filter(|_| self.gatherer.mirrors.is_some()) {
-            let light = &light.coefficients[..self.last.coefficients];
-            fixed::add_table(&mut self.radiance, radiance(&self.last, self.receivers.list.len(), light));
-        }
-    }
-
     /// Largest norm of a receiver's row that goes into the file, against an open receiver's.
     fn largest_norm(&self, field: &Field) -> f64 {
         (0..self.receivers.permanent as u32).map(|r| field.norm(r)).fold(0.0, f64::max) / self.gatherer.bank.open_norm
@@ -389,10 +347,4 @@ impl<'a> Run<'a> {
             self.achieved.worst_receiver = id;
         }
     }
-}
-
-/// Sum of the changes to come, if each is to the last as the last was to the one before.
-fn still_to_come(change: f64, before: f64) -> f64 {
-    let ratio = if before > 0.0 { change / before } else { 0.0 };
-    if ratio < 1.0 { change * ratio / (1.0 - ratio) } else { f64::INFINITY }
 }

@@ -85,6 +85,32 @@ impl Field {
         Self { values, ..*self }
     }
 
+    /// Over all receivers, for one channel: the products of this field with itself, of this with another, and of that with itself.
+    pub(crate) fn products(&self, other: &Self, channel: usize) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for receiver in 0..self.len() as u32 {
+            let pairs = self.channel(receiver, channel).iter().zip(other.channel(receiver, channel));
+            for (a, b) in pairs.map(|(a, b)| (f64::from(*a), f64::from(*b))) {
+                sums = [sums[0] + a * a, sums[1] + a * b, sums[2] + b * b];
+            }
+        }
+        sums
+    }
+
+    /// The sum of this field and another of the same shape with the factors of each channel.
+    pub(crate) fn combined(&self, other: &Self, factors: &dyn Fn(usize) -> [f32; 2]) -> Self {
+        let mut out = self.clone();
+        let stride = self.stride;
+        for receiver in 0..self.len() as u32 {
+            let rows = out.row_mut(receiver).chunks_exact_mut(stride).zip(other.row(receiver).chunks_exact(stride));
+            for (c, (own, other)) in rows.enumerate() {
+                let [a, b] = factors(c);
+                own.iter_mut().zip(other).for_each(|(x, y)| *x = a * *x + b * y);
+            }
+        }
+        out
+    }
+
     /// Largest norm over the channels of a receiver.
     pub(crate) fn norm(&self, receiver: u32) -> f64 {
         let square = |c: &[f32]| c.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();

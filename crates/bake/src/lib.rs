@@ -43,6 +43,7 @@ mod repair;
 mod rows;
 mod sample;
 mod senders;
+mod series;
 pub mod settings;
 mod split;
 mod storage;

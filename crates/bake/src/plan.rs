@@ -5,6 +5,7 @@ use crate::extras::Extras;
 use crate::facts::Facts;
 use crate::receivers::Receivers;
 use crate::rows;
+use crate::series;
 use crate::survey::{open_norms, survey};
 use crate::world::{Shine, World};
 use crate::{Error, settings};
@@ -214,7 +215,7 @@ fn most_bounces(albedo: f32, tolerance: f64) -> u32 {
 fn expected_bounces(asked: Bounces, bounced: f32, tolerance: f64) -> u32 {
     match asked {
         Bounces::Fixed(n) => n,
-        Bounces::Auto => geometric(f64::from(bounced), tolerance).max(1),
+        Bounces::Auto => geometric(f64::from(bounced), tolerance).clamp(1, series::EXPECTED),
     }
 }
 

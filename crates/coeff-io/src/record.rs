@@ -117,6 +117,10 @@ pub struct Achieved {
     /// there: median, 95th percentile, worst; none where it was not measured. In the supplement.
     #[serde(skip)]
     pub interpolation: Option<[f32; 3]>,
+    /// Bound of what further bounces would add, against an open receiver, where bounces faded slowly and the tail of their series was summed
+    /// in closed form; none where they ended by themselves or at a number asked for. In the supplement.
+    #[serde(skip)]
+    pub remainder: Option<f32>,
 }
 
 /// What gloss and transfer textures took and reached.

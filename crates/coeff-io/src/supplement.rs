@@ -13,13 +13,20 @@ pub struct Supplement {
     pub unlit: Vec<u32>,
     /// [`crate::Achieved::interpolation`].
     pub interpolation: Option<[f32; 3]>,
+    /// [`crate::Achieved::remainder`].
+    pub remainder: Option<f32>,
 }
 
 impl Supplement {
     /// What of `header` belongs into the supplement.
     pub(crate) fn from_header(header: &Header) -> Self {
         let unlit = (0..).zip(&header.materials).filter(|(_, material)| material.unlit).map(|(index, _)| index);
-        Self { origin: header.origin, unlit: unlit.collect(), interpolation: header.achieved.interpolation }
+        Self {
+            origin: header.origin,
+            unlit: unlit.collect(),
+            interpolation: header.achieved.interpolation,
+            remainder: header.achieved.remainder,
+        }
     }
 
     /// The bytes of the chunk; empty where everything has its default.
@@ -30,7 +37,8 @@ impl Supplement {
         }
         // JSON writes what is no number as null, so nothing but numbers may come here.
         let numbers = supplement.origin.iter().all(|x| x.is_finite())
-            && supplement.interpolation.is_none_or(|errors| errors.iter().all(|x| x.is_finite()));
+            && supplement.interpolation.is_none_or(|errors| errors.iter().all(|x| x.is_finite()))
+            && supplement.remainder.is_none_or(f32::is_finite);
         if !numbers {
             return Err(Error::invalid(0, "the origin or the interpolation error is not a number"));
         }
@@ -44,6 +52,7 @@ impl Supplement {
             .map_err(|e| Error::invalid(offset, format!("the supplement of the header cannot be decoded: {e}")))?;
         header.origin = supplement.origin;
         header.achieved.interpolation = supplement.interpolation;
+        header.achieved.remainder = supplement.remainder;
         let materials = header.materials.len();
         for index in supplement.unlit {
             let material = header.materials.get_mut(index as usize).ok_or_else(|| {

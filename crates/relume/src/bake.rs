@@ -129,6 +129,9 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
     if achieved.error[2] > 0.0 {
         console.notice(&format!("worst {}", worst_place(prt)));
     }
+    if let Some(warning) = crate::bounces::warning(prt) {
+        console.notice(&warning);
+    }
     if let Some(maps) = &achieved.maps {
         console.notice(&light_maps(maps, prt.settings.quality));
     }

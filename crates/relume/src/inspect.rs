@@ -168,6 +168,9 @@ fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
         row("textures", crate::bake::gloss_text(gloss, settings.quality))?;
     }
     row("bounces", changes(achieved.bounces, &achieved.bounce_changes))?;
+    if let Some(text) = crate::bounces::summed(achieved) {
+        row("tail", text)?;
+    }
     let repairs = achieved.repairs;
     let (inside, normals) = (repairs.inside, repairs.bad_normals);
     row("repairs", format!("{inside} inside geometry, {normals} bad normals, {} not repaired", repairs.unrepaired))?;

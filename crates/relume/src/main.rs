@@ -4,6 +4,7 @@ mod arguments;
 mod bake;
 mod bases;
 mod bases_scene;
+mod bounces;
 mod columns;
 mod console;
 mod cost;

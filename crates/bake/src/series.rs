@@ -1,0 +1,111 @@
+//! The series of bounces beyond those that are simulated one by one, summed in closed form.
+//!
+//! Bounces are the terms `x, A x, A^2 x, ...` of a linear operator, so from some bounce on each is the one before times its largest eigenvalue
+//! `q`, and all that follow sum to `q / (1 - q)` of the last. What the last differs from its eigenvector by is no longer a bounce of the
+//! series, but it is carried on as if it were one: the sum stays exact, and what is still missing is measured.
+
+use crate::field::Field;
+
+/// Bounces that are simulated before a tail is summed: most scenes end sooner by themselves.
+pub(crate) const FIRST: u32 = 24;
+/// Bounces that are expected at most where their number is left open.
+pub(crate) const EXPECTED: u32 = FIRST + 12;
+/// Most bounces where their number is left open; what is missing after them is told.
+pub(crate) const MOST: u32 = 256;
+/// Part of a bounce that may differ from the one before times the ratio where a tail is summed.
+const SETTLED: f64 = 0.1;
+
+/// A tail that was summed.
+pub(crate) struct Tail {
+    /// All bounces after the last but for what `rest` brings.
+    pub(crate) sum: Field,
+    /// What takes the place of the next bounce.
+    pub(crate) rest: Field,
+    /// Largest ratio of two bounces, over the channels.
+    pub(crate) ratio: f64,
+}
+
+/// Sums the tail after `last`, which `next` follows; none where the bounces have not settled to one ratio yet, or do not fade.
+pub(crate) fn tail(last: &Field, next: &Field) -> Option<Tail> {
+    let mut ratios = Vec::with_capacity(last.channels);
+    for channel in 0..last.channels {
+        let [own, cross, square] = last.products(next, channel);
+        if own <= 0.0 {
+            ratios.push(0.0);
+            continue;
+        }
+        let ratio = cross / own;
+        // The square of next - ratio last.
+        let away = square - ratio * cross;
+        if !(0.0..1.0).contains(&ratio) || away > SETTLED * SETTLED * (1.0 - ratio) * square {
+            return None;
+        }
+        ratios.push(ratio);
+    }
+    let ratio = ratios.iter().copied().fold(0.0, f64::max);
+    let sum = last.combined(next, &|c| [(ratios[c] / (1.0 - ratios[c])) as f32, 0.0]);
+    // Of x = last and A x = next the sum q / (1 - q) x leaves the residual (A x - q x) / (1 - q).
+    let rest = last.combined(next, &|c| [(-ratios[c] / (1.0 - ratios[c])) as f32, (1.0 / (1.0 - ratios[c])) as f32]);
+    Some(Tail { sum, rest, ratio })
+}
+
+/// What follows a change where each is to the one before as `ratio`.
+pub(crate) fn remainder(change: f64, ratio: f64) -> f64 {
+    if ratio < 1.0 { change * ratio / (1.0 - ratio) } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of one number each.
+    fn field(values: [f32; 3]) -> Field {
+        let mut field = Field::zeros(3, 1, 1);
+        (0..3).zip(values).for_each(|(row, value)| field.set(row, &[value]));
+        field
+    }
+
+    fn values(field: &Field) -> [f64; 3] {
+        [0, 1, 2].map(|row| f64::from(field.channel(row, 0)[0]))
+    }
+
+    /// A symmetric operator with rows that sum to 0.99 and eigenvalues 0.99, 0.3 and 0.
+    fn operator(x: [f64; 3]) -> [f64; 3] {
+        let mean = 0.99 * (x[0] + x[1] + x[2]) / 3.0;
+        let turn = 0.3 * (x[0] - x[1]) / 2.0;
+        [mean + turn, mean - turn, mean]
+    }
+
+    fn sum_of_series(mut x: [f64; 3], terms: u32) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for _ in 0..terms {
+            x = operator(x);
+            sum = [0, 1, 2].map(|i| sum[i] + x[i]);
+        }
+        sum
+    }
+
+    /// Against thousands of terms: the tail, and what the rest brings, are all that follows.
+    #[test]
+    fn a_tail_is_the_sum_of_what_follows() {
+        let last = [1.004, 0.997, 1.0];
+        let next = operator(last);
+        let tail = tail(&field(last.map(|x| x as f32)), &field(next.map(|x| x as f32))).expect("settled");
+        assert!((tail.ratio - 0.99).abs() < 1e-4);
+        let (sum, rest) = (values(&tail.sum), values(&tail.rest));
+        let after = sum_of_series(rest, 5000);
+        let all = sum_of_series(last, 5000);
+        for i in 0..3 {
+            let found = sum[i] + rest[i] + after[i];
+            assert!((found / all[i] - 1.0).abs() < 1e-4, "{found}, not {}", all[i]);
+            assert!((sum[i] / all[i] - 1.0).abs() > 1e-5 || i == 2, "can fail: the rest is a part of it");
+        }
+    }
+
+    #[test]
+    fn bounces_that_have_not_settled_have_no_tail() {
+        let last = [1.0, 0.0, 0.0];
+        assert!(tail(&field([1.0, 0.0, 0.0]), &field(operator(last).map(|x| x as f32))).is_none());
+        assert!(tail(&field([1.0; 3]), &field([1.0; 3])).is_none(), "what does not fade has no sum");
+    }
+}
