@@ -396,3 +396,25 @@ fn primaries_of_radiance_are_converted() {
     let (found, warnings) = radiance("PRIMARIES=0.64 0.33").expect("a picture");
     assert!(found == [0.25, 0.5, 1.0] && warnings[0].contains("not eight numbers"), "{warnings:?}");
 }
+
+#[test]
+fn no_changed_byte_of_a_subsampled_file_does_worse_than_an_error() {
+    let value = |x: i32, y: i32| 1.0 + 0.01 * (x * y) as f32;
+    let options = LoadOptions { layout: Some(probe_io::Layout::Equirect), ..LoadOptions::lenient() };
+    for compression in [Compression::Uncompressed, Compression::ZIP16, Compression::PIZ] {
+        let chroma = |name| Channel { name, is_half: true, sampling: [2, 2], value: &value };
+        let mut file = lines(vec![chroma("BY"), chroma("RY"), halves("Y", &value)]);
+        file.compression = compression;
+        let whole = file.bytes();
+        assert!(load("flip.exr", &whole, &options).is_ok(), "{compression}");
+        for at in 8..whole.len() {
+            for change in [0x01, 0x80, 0xff] {
+                let mut bytes = whole.clone();
+                bytes[at] ^= change;
+                // Either outcome is right; a panic is not.
+                let _outcome = load("flip.exr", &bytes, &options);
+            }
+            assert!(load("flip.exr", &whole[..at], &options).is_err(), "{compression} cut at {at}");
+        }
+    }
+}
