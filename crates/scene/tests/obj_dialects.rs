@@ -65,7 +65,9 @@ fn writing_does_not_change_the_scene() {
     let last = format!("{}mtllib a.mtl\n", CUBE.replace("mtllib a.mtl\n", ""));
     let counted = CUBE.replace("f 9 12 11 10", "f -4 -1 \\\n -2 -3 # the floor");
     let said = CUBE.replace("usemtl red", "usemtl red   # the box").replace("mtllib a.mtl", "mtllib a.mtl # colours");
-    let files: [(&str, Vec<u8>, Vec<u8>); 9] = [
+    let joined = (CUBE.replace("o floor\nv -4", "\u{feff}v -4"), LIBRARY.replace("newmtl red", "\u{feff}newmtl red"));
+    let files: [(&str, Vec<u8>, Vec<u8>); 10] = [
+        ("marks within", joined.0.into(), joined.1.into()),
         ("byte order mark", marked(CUBE.as_bytes()), marked(LIBRARY.as_bytes())),
         ("mark and CR in the library", CUBE.into(), marked(LIBRARY.replace('\n', "\r").as_bytes())),
         ("CR", old_mac.into(), LIBRARY.into()),

@@ -81,7 +81,8 @@ pub(super) fn words(statement: &str) -> impl Iterator<Item = &str> {
 
 /// The keyword of a statement, and what follows it up to the end of the line, comments included.
 pub(super) fn keyword(statement: &str) -> (&str, &str) {
-    let statement = statement.trim();
+    // Files that were put together have byte order marks within.
+    let statement = statement.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
     let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
     (keyword, rest.trim())
 }
