@@ -78,6 +78,9 @@ pub(crate) fn bake_then<T>(
 ) -> Result<(Prt, T), Error> {
     settings::check(settings)?;
     let scene = &*refined(scene, settings, progress)?;
+    let monitor = Monitor::new(progress);
+    monitor.begin(Stage::Preparation, 1);
+    monitor.check()?;
     let prepared = prepare(scene, settings, extras)?;
     if let Some(volume) = &extras.volume {
         crate::volume::check(volume, scene, &prepared, settings, extras.light.is_some())?;
@@ -93,7 +96,6 @@ pub(crate) fn bake_then<T>(
     // Where nothing is traced no directions are needed: the smallest set stands in.
     let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };
     let bank = DirectionBank::new(bands, &Settings { quality, ..settings.clone() });
-    let monitor = Monitor::new(progress);
     let glossy = simulates(&plan, Effect::Glossy);
     // Where no light bounces none is mirrored on its way.
     let mirrors = match glossy && simulates(&plan, Effect::Interreflection) {

@@ -68,14 +68,20 @@ impl<'a> Bends<'a> {
         monitor: &Monitor<'_>,
     ) -> Result<HashSet<Place>, Error> {
         let mut bent = HashSet::new();
-        for (index, mesh) in scene.meshes.iter().enumerate() {
-            let new = self.unseen(index, mesh, shortest);
+        let unseen: Vec<_> =
+            scene.meshes.iter().enumerate().map(|(index, mesh)| self.unseen(index, mesh, shortest)).collect();
+        let ends: Vec<BTreeSet<usize>> = unseen.iter().enumerate().map(|(index, new)| self.ends(index, new)).collect();
+        // One count for all meshes: progress runs once from none to all.
+        let total = unseen.iter().map(|new| new.len() as u64).chain(ends.iter().map(|e| e.len() as u64)).sum();
+        monitor.begin(Stage::Refinement, total);
+        for (index, (new, ends)) in unseen.into_iter().zip(ends).enumerate() {
+            let mesh = &scene.meshes[index];
             if new.is_empty() {
                 continue;
             }
-            self.look_from_ends(scene, index, new.iter().map(|(edge, _)| *edge), monitor)?;
+            self.look_from_ends(scene, index, ends, (total, monitor))?;
             let receivers: Vec<Receiver> = new.iter().map(|(edge, sums)| sums.receiver(mesh, *edge)).collect();
-            let looks = self.look(&receivers, two_sided(scene, index), monitor)?;
+            let looks = self.look(&receivers, two_sided(scene, index), (total, monitor))?;
             for ((edge, _), look) in new.into_iter().zip(looks) {
                 if self.bend(index, edge, &look) > BEND {
                     bent.insert(place(mesh, edge));
@@ -97,22 +103,28 @@ impl<'a> Bends<'a> {
         }
     }
 
-    /// Looks from the ends of edges where that was not done yet.
+    /// The ends of edges from which nothing was looked at yet.
+    fn ends(&self, index: usize, edges: &[(Edge, EdgeSums)]) -> BTreeSet<usize> {
+        let looks = &self.vertices[index];
+        let ends = edges.iter().flat_map(|(edge, _)| *edge).map(|v| v as usize);
+        ends.filter(|&v| looks[v].is_empty()).collect()
+    }
+
+    /// Looks from vertices of a mesh.
     fn look_from_ends(
         &mut self,
         scene: &Scene,
         index: usize,
-        edges: impl Iterator<Item = Edge>,
-        monitor: &Monitor<'_>,
+        ends: BTreeSet<usize>,
+        watched: (u64, &Monitor<'_>),
     ) -> Result<(), Error> {
-        let (mesh, looks) = (&scene.meshes[index], &self.vertices[index]);
-        let ends: BTreeSet<usize> = edges.flatten().map(|v| v as usize).filter(|&v| looks[v].is_empty()).collect();
+        let mesh = &scene.meshes[index];
         let faces = FaceSums::of(mesh);
         let receiver = |&v: &usize| {
             Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v)).0
         };
         let receivers: Vec<Receiver> = ends.iter().map(receiver).collect();
-        let new = self.look(&receivers, two_sided(scene, index), monitor)?;
+        let new = self.look(&receivers, two_sided(scene, index), watched)?;
         for (v, look) in ends.into_iter().zip(new) {
             self.vertices[index][v] = look;
         }
@@ -139,7 +151,13 @@ impl<'a> Bends<'a> {
         away.chunks_exact(self.bands.coefficients()).map(norm).fold(0.0, f32::max) / self.bank.open_norm as f32
     }
 
-    fn look(&self, receivers: &[Receiver], two_sided: bool, monitor: &Monitor<'_>) -> Result<Vec<Look>, Error> {
+    /// Looks from some of the points that progress is told of.
+    fn look(
+        &self,
+        receivers: &[Receiver],
+        two_sided: bool,
+        (total, monitor): (u64, &Monitor<'_>),
+    ) -> Result<Vec<Look>, Error> {
         let gatherer = Gatherer {
             world: self.world,
             bank: &self.bank,
@@ -151,8 +169,6 @@ impl<'a> Bends<'a> {
             worth: 0.0,
             mirrors: None,
         };
-        let total = receivers.len() as u64;
-        monitor.begin(Stage::Refinement, total);
         let one = |worker: &mut Worker, receiver: &Receiver| {
             let mut look = Look::new();
             if monitor.is_cancelled() {

@@ -16,6 +16,8 @@ pub struct Progress {
 /// A stage of the bake.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
+    /// The tree that rays walk, and what the plan needs to know.
+    Preparation,
     /// Where the transfer bends between vertices.
     Refinement,
     /// What each receiver sees of the sky.
@@ -35,6 +37,7 @@ pub enum Stage {
 impl std::fmt::Display for Stage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
+            Self::Preparation => write!(f, "preparation"),
             Self::Refinement => write!(f, "refinement"),
             Self::Visibility => write!(f, "visibility"),
             Self::Helpers => write!(f, "backs and near surfaces"),

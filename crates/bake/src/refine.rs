@@ -5,6 +5,7 @@ use crate::exits::cut_at_exits;
 use crate::facts::Facts;
 use crate::passes::Monitor;
 use crate::plan::{allowed, world};
+use crate::progress::Stage;
 use crate::receivers::Receivers;
 use crate::split::{Edge, MOST_TRIANGLES, edges, halve, length};
 use crate::world::World;
@@ -64,12 +65,14 @@ pub fn refine_watched<'a>(
             if !allowed(settings, Effect::Visibility) {
                 return Ok(Cow::Borrowed(scene));
             }
+            let monitor = Monitor::new(progress);
+            monitor.begin(Stage::Preparation, 1);
+            monitor.check()?;
             let world = world(scene, &Facts::of_materials(scene, settings, false), settings)?;
             if !has_shadows(scene, &world) {
                 return Ok(Cow::Borrowed(scene));
             }
             let longest = even_edge(scene);
-            let monitor = Monitor::new(progress);
             let split = at_bends(evenly(scene, longest)?, longest, &world, &monitor)?;
             cut_at_exits(split, &world, &monitor)
         }

@@ -1,8 +1,14 @@
 //! Files that are there whole or not at all.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::NamedTempFile;
+
+/// Files that are being filled; none once all was abandoned.
+static MAKING: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(Some(BTreeSet::new()));
 
 /// Writes a file beside `path` and renames it to `path` when `fill` has succeeded and the bytes are on the disk.
 ///
@@ -18,14 +24,70 @@ pub fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Resu
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let beside = builder().tempfile_in(folder)?;
-    let mut writer = BufWriter::with_capacity(1 << 20, beside.as_file());
+    let beside = Making::begin(folder)?;
+    let mut writer = BufWriter::with_capacity(1 << 20, beside.file.as_file());
     fill(&mut writer)?;
     writer.flush()?;
     drop(writer);
-    beside.as_file().sync_all()?;
-    beside.persist(path).map_err(|e| e.error)?;
+    beside.file.as_file().sync_all()?;
+    beside.finish(path)?;
     sync_folder(folder)
+}
+
+/// Removes what is being written, and lets no further file come to be: for a program that is about to end. Files that are there
+/// stay as they are.
+pub fn abandon() {
+    for part in making().take().into_iter().flatten() {
+        // What is left beside a file is no reason to stay.
+        let _ = std::fs::remove_file(part);
+    }
+}
+
+fn making() -> MutexGuard<'static, Option<BTreeSet<PathBuf>>> {
+    MAKING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn abandoned() -> io::Error {
+    io::Error::other("the program is about to end")
+}
+
+/// A file beside its place.
+struct Making {
+    file: NamedTempFile,
+    part: Part,
+}
+
+/// Its name among those that are being filled.
+struct Part(PathBuf);
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        if let Some(parts) = making().as_mut() {
+            parts.remove(&self.0);
+        }
+    }
+}
+
+impl Making {
+    fn begin(folder: &Path) -> io::Result<Making> {
+        let mut making = making();
+        let parts = making.as_mut().ok_or_else(abandoned)?;
+        let file = builder().tempfile_in(folder)?;
+        parts.insert(file.path().to_owned());
+        let part = Part(file.path().to_owned());
+        Ok(Making { file, part })
+    }
+
+    fn finish(self, path: &Path) -> io::Result<()> {
+        let making = making();
+        if making.is_none() {
+            return Err(abandoned());
+        }
+        self.file.persist(path).map_err(|e| e.error)?;
+        drop(making);
+        drop(self.part);
+        Ok(())
+    }
 }
 
 /// Temporary files are private by default; a result should have the permissions of any other new file.

@@ -29,5 +29,5 @@ pub use error::Error;
 pub use layout::Layout;
 pub use load::{LoadOptions, Negatives};
 pub use nonfinite::NonFinite;
-pub use picture::{read_picture, write_exr, write_hdr};
+pub use picture::{encode_exr, read_picture, write_exr, write_hdr};
 pub use probe::{Probe, Texel};

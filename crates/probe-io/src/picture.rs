@@ -83,9 +83,16 @@ pub fn write_hdr(path: &Path, width: usize, height: usize, pixels: &[[f32; 3]]) 
 /// # Errors
 /// Where the pixels do not fill the size, or the system refuses.
 pub fn write_exr(path: &Path, width: usize, height: usize, pixels: &[[f32; 3]]) -> Result<(), Error> {
+    write_beside(path, &encode_exr(path, width, height, pixels)?)
+}
+
+/// The bytes of [`write_exr`], for whoever writes the file itself; `path` is named in errors.
+///
+/// # Errors
+/// Where the pixels do not fill the size.
+pub fn encode_exr(path: &Path, width: usize, height: usize, pixels: &[[f32; 3]]) -> Result<Vec<u8>, Error> {
     check_shape(path, width, height, pixels)?;
-    let bytes = openexr::encode(width, height, pixels).map_err(|fault| fault.at(path))?;
-    write_beside(path, &bytes)
+    openexr::encode(width, height, pixels).map_err(|fault| fault.at(path))
 }
 
 /// Refuses a picture whose pixels do not fill it.

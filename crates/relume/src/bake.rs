@@ -1,15 +1,17 @@
 //! `relume bake`: a scene becomes a `.prt` file.
 
 use crate::columns::percent;
-use crate::console::{Console, Progress};
+use crate::console::Console;
 use crate::extras::ExtraOptions;
 use crate::light_facts::LightFacts;
+use crate::progress::Progress;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{interrupt, look, output, settings, timed};
 use anyhow::{Context, Result};
-use coeff_io::{Prt, Quality, Settings};
+use bake::Extras;
+use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -73,15 +75,29 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let mut scene = options.scene.load(console)?;
     let probe = options.probe.as_ref().map(|probe| (probe, &options.read));
     let extras = options.extras.of(&mut scene, options.bake.storage, &settings, probe, console)?;
-    interrupt::watch()?;
+    console.progress().expect(&stages(&settings, &extras));
     let began = Instant::now();
     let path = &options.output;
     let write = |prt: &Prt| prt.write(path).with_context(|| format!("cannot write {}", path.display()));
     let prt = match settings.time {
-        Some(seconds) => timed::bake(&scene, &settings, &extras, Duration::from_secs_f32(seconds), &write, console)?,
+        Some(seconds) => {
+            let deadline = console.began() + Duration::from_secs_f32(seconds);
+            interrupt::leave_at(deadline)?;
+            let keep = |prt: &Prt| {
+                write(prt)?;
+                let recorder = console.recorder();
+                report(prt, began.elapsed(), options, &recorder);
+                interrupt::hold(recorder.recorded());
+                Ok(())
+            };
+            let prt = timed::bake(&scene, &settings, &extras, deadline, &keep, console)?;
+            interrupt::over();
+            prt
+        }
         None => {
-            let prt =
-                bake::bake_with(&scene, &settings, &extras, &watched(&console.progress(), None)).map_err(fault)?;
+            let progress = console.progress();
+            let prt = bake::bake_with(&scene, &settings, &extras, &watched(&progress)).map_err(fault)?;
+            progress.tell("writing", "writing", 0.0);
             write(&prt)?;
             prt
         }
@@ -90,18 +106,40 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     Ok(())
 }
 
-/// Shows the progress of a bake, and stops it at Ctrl-C or when its time is up.
-pub(crate) fn watched<'a>(
-    progress: &'a Progress,
-    deadline: Option<Instant>,
-) -> impl Fn(&bake::Progress) -> ControlFlow<()> + Sync + 'a {
+/// Share of the bounces that are still to come that one bounce is taken for: how many there will be, nobody knows.
+const BOUNCE: f64 = 0.4;
+
+/// Shows the progress of a bake.
+pub(crate) fn watched(progress: &Progress) -> impl Fn(&bake::Progress) -> ControlFlow<()> + Sync + '_ {
     move |now| {
-        progress.set(&now.stage.to_string(), now.done, now.total);
-        if deadline.is_some_and(|deadline| Instant::now() > deadline) {
-            return ControlFlow::Break(());
+        let share = if now.total > 0 { now.done as f64 / now.total as f64 } else { 0.0 };
+        match now.stage {
+            bake::Stage::Bounce(n) => {
+                let bounces = f64::from(n.saturating_sub(1)) + share;
+                progress.tell("bounces", &now.stage.to_string(), 1.0 - (1.0 - BOUNCE).powf(bounces));
+            }
+            stage => progress.tell(&stage.to_string(), &stage.to_string(), share),
         }
-        interrupt::flow()
+        // Ctrl-C and the end of the time end the program as a whole.
+        ControlFlow::Continue(())
     }
+}
+
+/// The stages that a bake will have, with about how long each takes against the others.
+fn stages(settings: &Settings, extras: &Extras) -> Vec<(&'static str, f64)> {
+    let bounces = settings.bounces != Bounces::Fixed(0);
+    let texels = extras.maps.is_some() || extras.textures.is_some();
+    let stages = [
+        ("refinement", 2.0, settings.refine == Refine::Auto),
+        ("preparation", 0.5, true),
+        ("visibility", 4.0, true),
+        ("backs and near surfaces", 3.0, bounces),
+        ("bounces", 1.0, bounces),
+        ("texels", 6.0, texels),
+        ("probes", 3.0, extras.volume.is_some()),
+        ("writing", 0.1, true),
+    ];
+    stages.into_iter().filter(|stage| stage.2).map(|(name, weight, _)| (name, weight)).collect()
 }
 
 /// A setting out of range is wrong usage; everything else is a failure.
@@ -121,10 +159,8 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
         rays as f64 / seconds.max(1e-9) * 1e-6,
         achieved.bounces
     ));
-    let asked = match prt.settings.quality {
-        Quality::Error(asked) if prt.settings.time.is_none() => format!("asked for {}, ", percent(asked)),
-        _ => String::new(),
-    };
+    // With a time, or by default, nobody asked for an error.
+    let asked = options.bake.asked_error().map_or(String::new(), |asked| format!("asked for {}, ", percent(asked)));
     console.notice(&format!("relative error: {asked}{}", error(prt.settings.quality, achieved.error)));
     if achieved.error[2] > 0.0 {
         console.notice(&format!("worst {}", worst_place(prt)));

@@ -7,7 +7,7 @@ use crate::extras::fixed_light;
 use crate::sheets::{PADDING, SMALLEST, SheetChoice};
 use crate::source::{self, ProbeSource, ReadOptions, SceneSource};
 use crate::usage::Usage;
-use crate::{bake as baking, cost, interrupt, output, settings};
+use crate::{bake as baking, cost, output, settings};
 use anyhow::Result;
 use bake::{Directional, SheetSettings};
 use coeff_io::{Bounces, Quality, Refine, Settings};
@@ -87,7 +87,6 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
         only: Vec::new(),
     };
     let sheets = choice.sheets(&mut scene, console)?;
-    interrupt::watch()?;
     let found = bake(&scene, &settings, &sheets, &environment, options.window, console)?;
     let bake_options = match options.window {
         Window::None => format!("--window none {}", choice.options()),
@@ -133,7 +132,7 @@ fn bake(
 ) -> Result<Directional> {
     let light = fixed_light(environment, settings.bands, window)?;
     let progress = console.progress();
-    bake::directional(scene, settings, sheets, &light, &baking::watched(&progress, None)).map_err(baking::fault)
+    bake::directional(scene, settings, sheets, &light, &baking::watched(&progress)).map_err(baking::fault)
 }
 
 impl OnScene {

@@ -1,24 +1,27 @@
 //! What the user sees: results on stdout; notices, progress and errors on stderr.
 
+use crate::progress::{Progress, State, say};
 use anyhow::Result;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{self, IsTerminal, Write};
-use std::sync::Mutex;
-use std::time::{Duration, Instant};
-
-/// Time between two lines of progress where there is no terminal.
-const LINE_EVERY: Duration = Duration::from_secs(5);
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// How much is said.
 #[derive(Debug)]
 pub(crate) struct Console {
     quiet: bool,
     verbose: bool,
+    began: Instant,
+    /// How far the command is.
+    state: Arc<Mutex<State>>,
+    /// Notices that are kept instead of said.
+    recorded: Option<Mutex<Vec<String>>>,
 }
 
 impl Console {
-    pub(crate) fn new(quiet: bool, verbose: bool) -> Self {
-        Self { quiet, verbose }
+    /// For a command that began at a moment.
+    pub(crate) fn new(quiet: bool, verbose: bool, began: Instant) -> Self {
+        Self { quiet, verbose, began, state: Arc::new(Mutex::new(State::new(began))), recorded: None }
     }
 
     /// Prints a result on stdout.
@@ -57,23 +60,33 @@ impl Console {
         self.line(&format!("error: {text}"));
     }
 
-    /// A lost stderr is no reason to stop.
     fn line(&self, text: &str) {
-        let _ = writeln!(io::stderr(), "{}", visible(text));
+        let text = visible(text);
+        match &self.recorded {
+            Some(lines) => lines.lock().unwrap_or_else(PoisonError::into_inner).push(text),
+            None => say(&text),
+        }
     }
 
-    /// Shows how far a long work is: a bar with rate and time left on a terminal, a line now and then elsewhere.
+    /// Shows how far the command is: a bar with the time left on a terminal, a line now and then elsewhere.
     pub(crate) fn progress(&self) -> Progress {
-        let shown = !self.quiet;
-        let bar = (shown && io::stderr().is_terminal()).then(|| {
-            let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
-            let style = ProgressStyle::with_template("{msg} {wide_bar} {percent}%  {per_sec}  {eta} left");
-            // The template is a constant; a wrong one would only cost the looks.
-            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar
-        });
-        let lines = Mutex::new(Lines { stage: String::new(), began: Instant::now(), said: Instant::now() });
-        Progress { lines: shown && bar.is_none(), bar, state: lines }
+        Progress::new((!self.quiet).then(|| Arc::clone(&self.state)))
+    }
+
+    /// When the command began.
+    pub(crate) fn began(&self) -> Instant {
+        self.began
+    }
+
+    /// A console that keeps its notices instead of saying them.
+    pub(crate) fn recorder(&self) -> Console {
+        let recorded = Some(Mutex::new(Vec::new()));
+        Console { recorded, state: Arc::clone(&self.state), ..*self }
+    }
+
+    /// What was noticed so far, where that is kept.
+    pub(crate) fn recorded(self) -> Vec<String> {
+        self.recorded.map_or_else(Vec::new, |lines| lines.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
@@ -90,78 +103,4 @@ fn visible(text: &str) -> String {
 /// Whether `error` means that the reader of our output has gone away.
 pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
-}
-
-/// The progress of one command; may be told from any thread.
-#[derive(Debug)]
-pub(crate) struct Progress {
-    bar: Option<ProgressBar>,
-    lines: bool,
-    state: Mutex<Lines>,
-}
-
-#[derive(Debug)]
-struct Lines {
-    stage: String,
-    began: Instant,
-    said: Instant,
-}
-
-impl Progress {
-    /// `done` of `total` of a stage are finished; a new stage name starts the clock anew.
-    pub(crate) fn set(&self, stage: &str, done: u64, total: u64) {
-        // A panic elsewhere is no reason for another one here.
-        let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let now = Instant::now();
-        let new = state.stage != stage;
-        if new {
-            *state = Lines { stage: stage.to_owned(), began: now, said: now };
-        }
-        if let Some(bar) = &self.bar {
-            if new {
-                bar.reset();
-                bar.set_message(stage.to_owned());
-            }
-            bar.set_length(total);
-            bar.set_position(done);
-        } else if self.lines && (new || now - state.said >= LINE_EVERY) {
-            state.said = now;
-            let _ = writeln!(io::stderr(), "{}", line(stage, done, total, now - state.began));
-        }
-    }
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
-}
-
-/// One line of progress, with rate and time left once there is something to reckon from.
-fn line(stage: &str, done: u64, total: u64, spent: Duration) -> String {
-    if done == 0 || spent < LINE_EVERY {
-        return format!("{stage}: {done} of {total}");
-    }
-    let rate = done as f64 / spent.as_secs_f64();
-    let left = total.saturating_sub(done) as f64 / rate;
-    format!("{stage}: {done} of {total}, {rate:.0}/s, {left:.0} s left")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn control_characters_of_names_do_not_reach_the_terminal() {
-        assert_eq!(visible("a\u{1b}[2J:\tb\r\nc\n"), "a\\u{1b}[2J:\tb\\r\nc\n");
-        assert_eq!(visible("no end"), "no end");
-    }
-
-    #[test]
-    fn lines_tell_rate_and_time_left() {
-        assert_eq!(line("rays", 0, 10, Duration::ZERO), "rays: 0 of 10");
-        assert_eq!(line("rays", 200, 1000, Duration::from_secs(10)), "rays: 200 of 1000, 20/s, 40 s left");
-    }
 }

@@ -5,13 +5,15 @@ use crate::lens::{self, Lens};
 use crate::sheets::{PADDING, SMALLEST, SheetChoice, has_normal_maps};
 use crate::source::{ProbeOptions, SceneOptions};
 use crate::usage::Usage;
-use crate::{interrupt, output, settings};
+use crate::{output, settings};
 use anyhow::{Context, Result};
 use bake::SheetSettings;
 use coeff_io::{Settings, replace};
 use scene::Scene;
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::time::Instant;
 use study::cost::report::{Machine, Run};
 use study::cost::{Error, Goal, LightMaps, Report, Request, Targets, csv, page, plots};
 use study::plot::chart::{Chart, Unit};
@@ -87,7 +89,6 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let environment = options.probe.load(console)?;
     output::check_all(&options.output, &FILES, &[options.scene.files(), options.probe.files()].concat())?;
     let (mapped, sheet_options) = (options.light_maps(&scene, console)?, options.sheet_choice().options());
-    interrupt::watch()?;
     let targets = Targets { error: options.target_error, seconds: options.target_time, bytes: options.target_size };
     let request = Request {
         scene: &scene,
@@ -100,10 +101,13 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     };
     let report = {
         let progress = console.progress();
+        let began = Instant::now();
         study::cost::study(&request, &|step| {
             let stage = if step.stage.is_empty() { String::new() } else { format!(": {}", step.stage) };
-            progress.set(&format!("{} {}{stage}", step.run, step.name), step.done, step.total);
-            interrupt::flow()
+            let share = began.elapsed().as_secs_f64() / options.budget;
+            progress.tell("study", &format!("{} {}{stage}", step.run, step.name), share.min(1.0));
+            // Ctrl-C ends the program as a whole.
+            ControlFlow::Continue(())
         })
     };
     let report = report.map_err(fault)?;

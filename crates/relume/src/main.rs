@@ -24,10 +24,12 @@ mod light_facts;
 mod list;
 mod look;
 mod maps;
+mod meter;
 mod mistake;
 mod output;
 mod picture;
 mod plan;
+mod progress;
 mod reference;
 mod render;
 mod settings;
@@ -44,12 +46,16 @@ use arguments::{Arguments, Command};
 use clap::Parser;
 use console::Console;
 use std::process::ExitCode;
+use std::time::Instant;
 use usage::Usage;
 
 fn main() -> ExitCode {
+    let began = Instant::now();
+    // First of all: whatever follows may be interrupted.
+    let watched = interrupt::watch();
     let arguments = Arguments::parse();
-    let console = Console::new(arguments.quiet, arguments.verbose);
-    match run(&arguments, &console) {
+    let console = Console::new(arguments.quiet, arguments.verbose, began);
+    match watched.and_then(|()| run(&arguments, &console)) {
         Ok(()) => ExitCode::SUCCESS,
         // A reader that has seen enough, such as `head`, is no failure.
         Err(error) if console::is_broken_pipe(&error) => ExitCode::SUCCESS,

@@ -5,7 +5,7 @@ use coeff_io::replace;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use render_cpu::Tonemap;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Most columns or rows.
@@ -63,12 +63,14 @@ impl Target {
 
     /// Writes a picture given in both forms; the file is there whole or not at all.
     pub(crate) fn write(&self, size: Size, linear: &[[f32; 3]], display: &[[u8; 4]]) -> Result<()> {
-        match self.kind {
-            Kind::Png => {
-                write_png(&self.path, size, display).with_context(|| format!("cannot write {}", self.path.display()))
+        let written = match self.kind {
+            Kind::Png => write_png(&self.path, size, display),
+            Kind::Exr => {
+                let bytes = probe_io::encode_exr(&self.path, size.width as usize, size.height as usize, linear)?;
+                replace(&self.path, |file| file.write_all(&bytes))
             }
-            Kind::Exr => Ok(probe_io::write_exr(&self.path, size.width as usize, size.height as usize, linear)?),
-        }
+        };
+        written.with_context(|| format!("cannot write {}", self.path.display()))
     }
 }
 

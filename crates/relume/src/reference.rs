@@ -6,13 +6,14 @@ use crate::lens::{self, Lens};
 use crate::picture::{self, DisplayOptions, Size, Target};
 use crate::source::{self, ProbeOptions, SceneOptions};
 use crate::usage::Usage;
-use crate::{interrupt, output, settings};
+use crate::{output, settings};
 use anyhow::{Context, Result, ensure};
 use coeff_io::Bounces;
 use glam::Vec3;
 use probe_io::Environment;
 use reference::{Gloss, Light, Lobe, Mirroring, Picture, Settings, World};
 use sh_math::{Bands, lobe};
+use std::ops::ControlFlow;
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -152,15 +153,16 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         Bounces::Fixed(count) => Some(count),
     };
     let settings = Settings { samples: options.spp, seed: options.seed, max_bounces };
-    interrupt::watch()?;
     let plain = World::with_normal_maps(&scene, options.normal_maps);
     let world = gloss.into_iter().fold(plain, World::with_gloss);
     let picture = {
         let progress = console.progress();
         let rows = options.size.height;
+        progress.set("rows", 0, u64::from(rows));
         reference::render(&world, &light, &camera, [options.size.width, rows], &settings, &|share| {
             progress.set("rows", (share * rows as f32).round() as u64, u64::from(rows));
-            interrupt::flow()
+            // Ctrl-C ends the program as a whole.
+            ControlFlow::Continue(())
         })
     };
     let mut picture = picture.context("the reference was cancelled; no file was written")?;

@@ -96,6 +96,11 @@ impl std::fmt::Display for BandsOption {
 }
 
 impl BakeOptions {
+    /// The error that was asked for, where one was.
+    pub(crate) fn asked_error(&self) -> Option<f32> {
+        self.error
+    }
+
     /// Bands that are baked at most.
     pub(crate) fn most_bands(&self) -> u32 {
         self.bands.count

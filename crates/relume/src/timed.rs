@@ -1,13 +1,13 @@
 //! The least error within a time: bakes from coarse to fine, each result kept until a finer one is finished.
 
 use crate::bake::{fault, watched};
+use crate::columns::percent;
 use crate::console::Console;
-use crate::interrupt;
 use anyhow::Result;
 use bake::Extras;
-use coeff_io::{Prt, Quality, Refine, Settings};
+use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
 use scene::Scene;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Error of the first result: it takes hardly more rays than the two looks that any estimate needs.
 const COARSEST: f32 = 0.1;
@@ -22,6 +22,19 @@ const SHARE: f64 = 0.8;
 /// Exponent of the time over the error before two results tell: rays grow with about this power.
 const EXPONENT: f64 = 1.4;
 
+/// Rays per second that any thread traces in a bake of any scene, all other work counted in.
+const SPEED: f64 = 0.4e6;
+/// Share of the time that the first result may take, for what is foreseen of it.
+const FIRST: f64 = 0.3;
+/// Rays for each that a receiver asks of the sky: what blocks them is looked up, backs and near surfaces look too.
+const OTHERS: f64 = 4.0;
+/// Rays of a receiver at [`COARSEST`], about.
+const COARSE_RAYS: f64 = 128.0;
+/// Fewest rays of a first result, and fewest for which its bounces are worth their time.
+const FEWEST_RAYS: u32 = 16;
+/// Receivers from which on the time of a bake tells that of one with more of them.
+const TELLING: f64 = 20_000.0;
+
 /// A finished bake: the error that it kept, asked for or better, and the seconds that it took.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Rung {
@@ -29,7 +42,8 @@ struct Rung {
     seconds: f64,
 }
 
-/// Bakes with ever smaller errors while time lasts; `write` gets each result. The first is finished whatever it takes.
+/// Bakes with ever smaller errors while time lasts; `keep` gets each result. The first is finished whatever it takes, so it is a coarse
+/// one, of the triangles as they are; from then on whoever called may end the program at the deadline.
 ///
 /// The error of each bake is chosen from the times of those before, so that it ends in the time left: what remains after
 /// the last is too little for an error smaller by a fifth.
@@ -37,56 +51,121 @@ pub(crate) fn bake(
     scene: &Scene,
     settings: &Settings,
     extras: &Extras,
-    allowed: Duration,
-    write: &dyn Fn(&Prt) -> Result<()>,
+    deadline: Instant,
+    keep: &dyn Fn(&Prt) -> Result<()>,
     console: &Console,
 ) -> Result<Prt> {
-    let began = Instant::now();
-    let deadline = began + allowed;
-    let mut rungs: Vec<Rung> = Vec::new();
-    let mut best: Option<Prt> = None;
-    let mut error = COARSEST;
-    // The split of the triangles does not depend on the error.
-    let scene = &*bake::refine_watched(scene, settings, &watched(&console.progress(), None)).map_err(fault)?;
-    loop {
+    let ladder = Ladder { settings, extras, deadline, keep, console };
+    let first = first(scene, settings, ladder.left());
+    let (mut best, rung) = ladder.step(scene, &first)?;
+    let mut rungs = vec![rung];
+    let mut scene = std::borrow::Cow::Borrowed(scene);
+    if settings.refine != Refine::Off && ladder.left() > rung.seconds {
+        let fine = bake::refine_watched(&scene, settings, &watched(&console.progress())).map_err(fault)?;
+        if foreseen(&scene, &fine, &first, rung) < ladder.left() {
+            let wanted = Settings { quality: Quality::Error(COARSEST), ..settings.clone() };
+            let rung;
+            (best, rung) = ladder.step(&fine, &wanted)?;
+            rungs = vec![rung];
+            scene = std::borrow::Cow::Owned(fine.into_owned());
+        }
+    }
+    while !exhausted(&best) {
+        let Some(error) = next(&rungs, ladder.left()) else { break };
+        let (prt, rung) = ladder.step(&scene, &Settings { quality: Quality::Error(error), ..settings.clone() })?;
+        best = prt;
+        rungs.push(rung);
+    }
+    Ok(best)
+}
+
+/// What all bakes have in common.
+struct Ladder<'a> {
+    settings: &'a Settings,
+    extras: &'a Extras,
+    deadline: Instant,
+    keep: &'a dyn Fn(&Prt) -> Result<()>,
+    console: &'a Console,
+}
+
+impl Ladder<'_> {
+    fn left(&self) -> f64 {
+        self.deadline.saturating_duration_since(Instant::now()).as_secs_f64()
+    }
+
+    /// One bake of triangles that are split already, or not to be split.
+    fn step(&self, scene: &Scene, wanted: &Settings) -> Result<(Prt, Rung)> {
         let start = Instant::now();
-        let wanted = Settings { quality: Quality::Error(error), refine: Refine::Off, ..settings.clone() };
-        let limit = best.is_some().then_some(deadline);
-        let result = bake::bake_with(scene, &wanted, extras, &watched(&console.progress(), limit));
-        match (result, best) {
-            (Err(bake::Error::Cancelled), Some(best)) => {
-                let why = if interrupt::flow().is_break() { "Ctrl-C" } else { "time is up" };
-                console.notice(&format!("{why}: the result before stays"));
-                return Ok(best);
+        let wanted = Settings { refine: Refine::Off, ..wanted.clone() };
+        let mut prt =
+            bake::bake_with(scene, &wanted, self.extras, &watched(&self.console.progress())).map_err(fault)?;
+        prt.settings.refine = self.settings.refine;
+        (self.keep)(&prt)?;
+        let reached = reached(&prt);
+        // The fewest rays that tell an error often reach a smaller one than was asked for: that is what is to be beaten.
+        let error = match wanted.quality {
+            Quality::Error(asked) => asked.min(reached),
+            Quality::Rays(_) => COARSEST,
+        };
+        let rung = Rung { error, seconds: start.elapsed().as_secs_f64() };
+        let seconds = self.console.began().elapsed().as_secs_f64();
+        match wanted.quality {
+            Quality::Error(_) => {
+                self.console.notice(&format!("after {seconds:.1} s: 95 % of the errors below {}", percent(reached)));
             }
-            (result, _) => {
-                let mut prt = result.map_err(fault)?;
-                prt.settings.refine = settings.refine;
-                write(&prt)?;
-                let of_maps = prt.achieved.maps.map_or(0.0, |maps| maps.error[1]);
-                let reached = prt.achieved.error[1].max(of_maps);
-                // The fewest rays that tell an error often reach a smaller one than was asked for: that is what is to be beaten.
-                rungs.push(Rung { error: error.min(reached), seconds: start.elapsed().as_secs_f64() });
-                let seconds = began.elapsed().as_secs_f64();
-                console.notice(&format!("after {seconds:.1} s: 95% of the errors below {reached:.4}"));
-                if reached == 0.0 || spent(&prt, error) {
-                    return Ok(prt);
-                }
-                best = Some(prt);
-            }
+            Quality::Rays(rays) => self.console.notice(&format!("after {seconds:.1} s: a first result of {rays} rays")),
         }
-        let left = deadline.saturating_duration_since(Instant::now()).as_secs_f64();
-        match (next(&rungs, left), best.take()) {
-            (Some(finer), prt) => (error, best) = (finer, prt),
-            (None, Some(prt)) => return Ok(prt),
-            (None, None) => unreachable!("a result was just kept"),
-        }
+        Ok((prt, rung))
     }
 }
 
-/// Whether most receivers took all directions that there are: a smaller error would change nothing.
-fn spent(prt: &Prt, asked: f32) -> bool {
-    prt.achieved.error[0].max(prt.achieved.maps.map_or(0.0, |maps| maps.error[0])) > asked
+/// The error of most receivers and texels.
+fn reached(prt: &Prt) -> f32 {
+    prt.achieved.error[1].max(prt.achieved.maps.map_or(0.0, |maps| maps.error[1]))
+}
+
+/// Settings of the first result: as coarse as the time needs, by a speed that every machine has.
+fn first(scene: &Scene, settings: &Settings, seconds: f64) -> Settings {
+    let rays = SPEED * rayon::current_num_threads() as f64 * FIRST * seconds / (OTHERS * receivers(scene).max(1.0));
+    if rays >= COARSE_RAYS {
+        return Settings { quality: Quality::Error(COARSEST), ..settings.clone() };
+    }
+    let bounces = match settings.bounces {
+        _ if rays < f64::from(FEWEST_RAYS) / 2.0 => Bounces::Fixed(0),
+        Bounces::Fixed(0) => Bounces::Fixed(0),
+        _ => Bounces::Fixed(1),
+    };
+    Settings { quality: Quality::Rays((rays as u32).clamp(FEWEST_RAYS, 64)), bounces, ..settings.clone() }
+}
+
+/// Vertices, and the backs of those that have two sides.
+fn receivers(scene: &Scene) -> f64 {
+    let sides = |mesh: &scene::Mesh| if scene.materials[mesh.material as usize].double_sided { 2.0 } else { 1.0 };
+    scene.meshes.iter().map(|mesh| mesh.positions.len() as f64 * sides(mesh)).sum()
+}
+
+/// Seconds that a coarse bake of the split triangles should take, by the first bake; 0 where that was too small to tell.
+fn foreseen(scene: &Scene, fine: &Scene, first: &Settings, rung: Rung) -> f64 {
+    let before = receivers(scene);
+    if before < TELLING {
+        return 0.0;
+    }
+    let rays = match first.quality {
+        Quality::Rays(rays) => COARSE_RAYS / f64::from(rays),
+        Quality::Error(_) => 1.0,
+    };
+    rung.seconds * rays * receivers(fine) / before
+}
+
+/// Whether no error is left, or most receivers took all directions that there are: a smaller error would change nothing.
+fn exhausted(prt: &Prt) -> bool {
+    match prt.settings.quality {
+        Quality::Rays(_) => false,
+        Quality::Error(asked) => {
+            reached(prt) == 0.0
+                || prt.achieved.error[0].max(prt.achieved.maps.map_or(0.0, |maps| maps.error[0])) > asked
+        }
+    }
 }
 
 /// The error to ask for next with so many seconds left; none where that would be hardly smaller.
@@ -146,6 +225,19 @@ mod tests {
         let blind: Rule = |rungs, left| (left > 0.0).then(|| rungs.last().expect("one at least").error / STEP);
         let (errors, used) = play(blind, 100.0, 1.9, 1.0);
         assert!(used > 100.0, "{errors:?} take {used}");
+    }
+
+    /// A scene too large for its time gets few rays, and no bounces where even these are many; a small one is as asked for.
+    #[test]
+    fn the_first_result_is_as_coarse_as_its_time() {
+        let scene = scene::builtin("atrium").expect("built in");
+        let settings = bake::settings::standard();
+        assert_eq!(first(&scene, &settings, 60.0).quality, Quality::Error(COARSEST));
+        let quick = first(&scene, &settings, 1e-3 * receivers(&scene) * 1e-3);
+        assert_eq!(quick.quality, Quality::Rays(FEWEST_RAYS));
+        assert!(matches!(quick.bounces, Bounces::Fixed(0 | 1)), "{:?}", quick.bounces);
+        let none = first(&scene, &settings, 0.0);
+        assert_eq!((none.quality, none.bounces), (Quality::Rays(FEWEST_RAYS), Bounces::Fixed(0)));
     }
 
     #[test]

@@ -130,25 +130,3 @@ fn malformed_collection_ends_in_clear_errors() {
         assert_eq!(errors, usize::from(!output.status.success()), "{name}: {text}");
     }
 }
-
-/// An interrupt ends a bake that would take minutes, with a sentence and without a file.
-#[test]
-#[cfg(unix)]
-fn an_interrupted_bake_leaves_nothing() {
-    use std::time::{Duration, Instant};
-    let folder = tempfile::tempdir().unwrap();
-    let arguments = ["bake", "builtin:atrium", "-o", "a.prt", "--rays", "65536", "--bands", "8"];
-    let mut command = command(folder.path(), &arguments);
-    let child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(1500));
-    let interrupted = Instant::now();
-    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(kill.success(), "the bake had ended before it was interrupted");
-    let output = child.wait_with_output().unwrap();
-    let text = complaint(&output);
-    assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("cancelled"), "{text}");
-    // The promise is 100 ms; the rest is for a machine under load.
-    assert!(interrupted.elapsed() < Duration::from_secs(3), "{:?}", interrupted.elapsed());
-    assert!(files(folder.path()).is_empty());
-}

@@ -1,5 +1,7 @@
 //! Runs the executable as a user would.
 
+#![allow(dead_code, reason = "each test file uses its own part of this module")]
+
 use std::path::Path;
 use std::process::{Command, Output};
 
