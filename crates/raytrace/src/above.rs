@@ -4,14 +4,18 @@ use crate::flat::Flats;
 use crate::tracer::Tracer;
 use crate::tree::{Child, Tree};
 use glam::{DVec3, Vec3};
+use std::sync::atomic::Ordering;
 
 /// A corner counts as above the plane from this part of the largest coordinate in play: half of the step by which
 /// rays leave a surface, so that whatever lies lower is below where the rays start.
 const TOLERANCE: f64 = 1.0 / 4_194_304.0;
 
-/// Nodes and blocks that are opened by their boxes alone. Most questions are answered by then; the others are about planes that run
-/// along much of the scene, and are worth looking at how flat the parts of the tree are.
-const BY_BOXES: usize = 24;
+/// Nodes and blocks between two looks at whether it would have been worth knowing how flat the parts of the tree are.
+const STRETCH: usize = 32;
+
+/// Steps per block of the tree that are spent in questions of more than a stretch before [`Flats`] are made: about what they cost.
+/// Scenes in which no plane runs along much of the scene never need them.
+const WORTH: usize = 16;
 
 impl Tracer {
     /// Whether any triangle has a corner above the plane through `origin` with unit `normal`, by more than 2^-22 of
@@ -41,7 +45,7 @@ impl Tracer {
     fn find(&self, half: &Half) -> (bool, usize) {
         let tree = &self.tree;
         let mut open = if tree.nodes.is_empty() { vec![] } else { vec![Child::node(0)] };
-        let mut flats: Option<&Flats> = None;
+        let mut flats = self.flats.get();
         let mut steps = 0;
         while let Some(child) = open.pop() {
             steps += 1;
@@ -51,15 +55,21 @@ impl Tracer {
                 }
                 continue;
             }
-            if steps > BY_BOXES {
-                let flats = *flats.get_or_insert_with(|| self.flats.get_or_init(|| Flats::of(tree)));
-                if !flats.may_reach(child.index(), half) {
-                    continue;
-                }
+            if flats.is_none() && steps.is_multiple_of(STRETCH) {
+                flats = self.flats_if_worth();
+            }
+            if flats.is_some_and(|flats| steps > STRETCH && !flats.may_reach(child.index(), half)) {
+                continue;
             }
             half.push_reaching(tree, child.index(), &mut open);
         }
         (false, steps)
+    }
+
+    /// Notes that a stretch of steps gave no answer; how flat the tree is, once that is worth knowing. Answers do not depend on it.
+    fn flats_if_worth(&self) -> Option<&Flats> {
+        let spent = self.spent.fetch_add(STRETCH, Ordering::Relaxed) + STRETCH;
+        (spent > WORTH * self.tree.blocks.len()).then(|| self.flats.get_or_init(|| Flats::of(&self.tree)))
     }
 }
 

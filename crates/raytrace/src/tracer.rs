@@ -11,6 +11,7 @@ use crate::walk::{Fresh, Solid, Walker, blocked};
 use glam::Vec3;
 use std::cell::Cell;
 use std::sync::OnceLock;
+use std::sync::atomic::AtomicUsize;
 
 thread_local! {
     /// The stack of this thread's walks: taken while one is under way, so that a filter may trace rays too.
@@ -27,6 +28,8 @@ pub struct Tracer {
     pub(crate) level: Level,
     /// Made when a question about a plane first needs it.
     pub(crate) flats: OnceLock<Flats>,
+    /// Steps that such questions took without it.
+    pub(crate) spent: AtomicUsize,
 }
 
 impl Tracer {
@@ -35,7 +38,12 @@ impl Tracer {
     /// Triangles with a corner that is missing, not finite or beyond 2^38 units are left out, as are those
     /// with two corners in one place.
     pub fn build(positions: &[Vec3], triangles: &[[u32; 3]], masked: &[bool]) -> Tracer {
-        Tracer { tree: build(positions, triangles, masked), level: Level::best(), flats: OnceLock::new() }
+        Tracer {
+            tree: build(positions, triangles, masked),
+            level: Level::best(),
+            flats: OnceLock::new(),
+            spent: AtomicUsize::new(0),
+        }
     }
 
     /// The same tracer at another level; None where this processor lacks it.
