@@ -68,18 +68,17 @@ impl Meter {
     pub(crate) fn set(&mut self, name: &str, share: f64, now: Instant) -> Reading {
         let new = self.enter(name, now);
         if let Some(current) = &mut self.current {
-            if share < current.last {
-                current.base = current.share;
+            // A pass begins at nothing; of the threads of one some tell late what they did.
+            if share <= 0.0 && current.last > 0.0 {
+                // One more pass has something to do.
+                current.base = current.share.min(1.0 - EARLY);
+                current.share = current.base;
             }
-            current.last = share;
+            current.last = if share <= 0.0 { 0.0 } else { current.last.max(share) };
             // The first pass may be all; a further one does a part of what is left.
             let part = if current.base > 0.0 { PASS } else { 1.0 };
             let reached = (current.base + (1.0 - current.base) * part * share).min(1.0);
             current.share = current.share.max(reached);
-            if current.base == 0.0 && share >= 1.0 {
-                // Should another pass follow, it has something left to do.
-                current.share = current.share.min(1.0 - EARLY);
-            }
         }
         let left = self.left(now);
         let elapsed = now.saturating_duration_since(self.began).as_secs_f64();
@@ -204,6 +203,20 @@ mod tests {
         assert!(found.windows(2).all(|w| w[0].0.share <= w[1].0.share), "it never runs backwards");
         assert!(found.iter().all(|(reading, _)| (0.0..=1.0).contains(&reading.share)), "a share");
         assert_eq!(found.iter().filter(|(reading, _)| reading.new).count(), 4, "each stage is new once");
+    }
+
+    /// Threads tell late what they did: no further pass begins.
+    #[test]
+    fn late_news_are_no_new_pass() {
+        let start = Instant::now();
+        let mut meter = Meter::new(start);
+        meter.expect(&[("visibility", 1.0)]);
+        let mut last = None;
+        for step in 0..=100 {
+            let share = f64::from(step - 2 * (step % 2)).max(0.5) / 100.0;
+            last = meter.set("visibility", share, start + Duration::from_secs_f64(f64::from(step))).left;
+        }
+        assert!(last.expect("known").as_secs_f64() < 0.01, "{last:?}");
     }
 
     /// A bar of each stage by itself, as it would be without a meter.
