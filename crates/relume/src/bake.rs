@@ -103,6 +103,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         }
     };
     report(&prt, began.elapsed(), options, console);
+    crate::enclosure::tell(&scene, &prt.plan, console);
     Ok(())
 }
 

@@ -9,6 +9,7 @@ mod columns;
 mod console;
 mod cost;
 mod draw;
+mod enclosure;
 mod export;
 mod extras;
 mod gloss;

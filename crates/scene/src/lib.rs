@@ -3,6 +3,7 @@
 //! The world is right-handed, in metres, y up (the axes of glTF); colours are linear Rec. 709.
 //! A [`Scene`] is flat: each mesh is one primitive of one instance, already in world space.
 
+mod backdrop;
 mod bounds;
 mod error;
 mod folder;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::folder::read_file;
-use crate::{Error, Scene, Warning, gltf, obj, repair};
+use crate::{Error, Scene, Warning, backdrop, gltf, obj, repair};
 
 /// Loads a `.gltf`, `.glb` or `.obj` file with everything that it refers to in its folder.
 ///
@@ -33,6 +33,7 @@ fn read(path: &Path) -> Result<Scene, Error> {
     };
     scene.name = path.display().to_string();
     repair::finish(&mut scene);
+    backdrop::drop_domes(&mut scene);
     if scene.meshes.is_empty() {
         return Err(Error::invalid(path, "scene", nothing_left(&scene)));
     }
