@@ -157,7 +157,7 @@ impl SheetChoice {
 fn tell(found: &Layouts, scene: &Scene, console: &Console) {
     let is_kept = |fault: &&Fault| found.charts.contains(&fault.mesh);
     let (kept, lost): (Vec<&Fault>, Vec<&Fault>) = found.faults.iter().partition(is_kept);
-    for (faults, what) in [(kept, "its charts are packed anew"), (lost, "it is unwrapped")] {
+    for (faults, what) in [(kept, "its charts are packed, or cut, anew"), (lost, "it is unwrapped")] {
         for fault in faults.iter().take(NAMED) {
             let name = &scene.meshes[fault.mesh].name;
             let place = match fault.kind {

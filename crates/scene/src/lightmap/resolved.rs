@@ -1,12 +1,13 @@
 //! Light-map coordinates made by the program, with texels enough for every chart.
 
+use super::chart::Charts;
 use super::fault::doubled_area;
 use super::resolve::{ChartSize, too_small};
 use super::unwrap::{Atlas, Density, Unwrap, UnwrapError, check, inputs_of, library, lost};
 use crate::vertices::select;
 use crate::{Mesh, Scene};
 use glam::Vec2;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Times that charts are packed anew before a larger sheet is taken.
 const ROUNDS: u32 = 4;
@@ -14,6 +15,8 @@ const ROUNDS: u32 = 4;
 const LARGER: f64 = 1.3;
 /// Texels that a chart is grown to: a little more than it needs, since growing makes all others smaller.
 const AIM: f64 = 5.0;
+/// Times as many pieces as a mesh had charts from which on it is better cut anew.
+const MOST_PIECES: usize = 2;
 /// Texels along a side of the box around the smallest chart, and the share of a sheet that such boxes fill.
 const SMALLEST_BOX: (f64, f64) = (3.0, 0.75);
 
@@ -21,7 +24,7 @@ type Progress<'a> = &'a (dyn Fn(&'static str, u64, u64) + Sync);
 
 /// [`super::unwrap`] into a sheet where each chart has four texels, but for chips: small charts are denser than the rest, and where even
 /// that does not do the sheet grows. Of the meshes in `kept` the charts of their own coordinates are kept where they are sound: moved, turned
-/// and scaled.
+/// and scaled; a mesh whose charts fall into many pieces is cut anew.
 ///
 /// # Errors
 /// As [`super::unwrap`]; [`UnwrapError::TooCoarse`] where the sheet would have more than `most` texels along a side. The scene is then as it was.
@@ -36,6 +39,10 @@ pub fn unwrap_resolved(
     check(scene, sheet, options)?;
     let mut options = *options;
     let mut draft = Draft::first(scene, sheet, kept, &options, progress)?;
+    let sound: Vec<usize> = kept.iter().copied().filter(|&mesh| draft.keeps(scene, sheet, mesh)).collect();
+    if sound.len() < kept.len() {
+        draft = Draft::first(scene, sheet, &sound, &options, progress)?;
+    }
     let mut scales: Vec<Vec<f32>> = draft.meshes.iter().map(|mesh| vec![1.0; mesh.triangles.len()]).collect();
     let mut rounds = 0;
     loop {
@@ -131,6 +138,13 @@ impl Draft {
             filled: atlas.utilization,
             meshes: vec![DraftMesh::default(); meshes],
         }
+    }
+
+    /// Whether most of the charts that a mesh brought are whole: what folds or lies upon itself falls into many pieces.
+    fn keeps(&self, scene: &Scene, sheet: &[usize], mesh: usize) -> bool {
+        let Some(index) = sheet.iter().position(|&other| other == mesh) else { return false };
+        let made: BTreeSet<u32> = self.meshes[index].charts.iter().flatten().copied().collect();
+        made.len() <= MOST_PIECES * Charts::of(&scene.meshes[mesh]).count as usize
     }
 
     /// The same charts packed anew, those of each triangle with its scale.
