@@ -38,6 +38,10 @@ pub fn unwrap_resolved(
 ) -> Result<Atlas, UnwrapError> {
     check(scene, sheet, options)?;
     let mut options = *options;
+    let asked = match options.density {
+        Density::Side(side) => side,
+        Density::PerMetre(_) => most,
+    };
     let mut draft = Draft::first(scene, sheet, kept, &options, progress)?;
     let sound: Vec<usize> = kept.iter().copied().filter(|&mesh| draft.keeps(scene, sheet, mesh)).collect();
     if sound.len() < kept.len() {
@@ -47,27 +51,29 @@ pub fn unwrap_resolved(
     let mut rounds = 0;
     loop {
         let small = too_small(&draft.sizes(scene, sheet));
-        if draft.pages == 1 && small.is_empty() {
-            return Ok(draft.apply(scene, sheet));
+        let side = match options.density {
+            Density::Side(side) => side,
+            Density::PerMetre(_) => 0,
+        };
+        if draft.pages == 1 && (small.is_empty() || side == 0 && rounds > ROUNDS) {
+            // The side that does is known only now.
+            let needed = draft.width.max(draft.height).max(side);
+            return match side > most.max(asked) {
+                true => Err(UnwrapError::TooCoarse { charts: draft.charts, needed, side: most.max(asked) }),
+                false => Ok(draft.apply(scene, sheet)),
+            };
         }
-        if draft.pages == 1 {
-            draft.grow(&small, sheet, &mut scales);
-        }
-        if let Density::Side(side) = options.density {
-            let fewest = fewest(draft.charts, options.padding);
+        let fewest = fewest(draft.charts, options.padding);
+        rounds += 1;
+        if side > 0 && (side < fewest || draft.pages > 1 || rounds > ROUNDS) {
             let larger = (f64::from(side) * LARGER).ceil() as u32;
-            rounds += 1;
-            if side < fewest || draft.pages > 1 || rounds > ROUNDS {
-                let needed = larger.max(fewest);
-                if needed > most {
-                    return Err(UnwrapError::TooCoarse { charts: draft.charts, needed, side: side.max(most) });
-                }
-                (options.density, rounds) = (Density::Side(needed), 0);
-            }
-        } else if rounds > ROUNDS {
-            return Ok(draft.apply(scene, sheet));
+            options.density = Density::Side(larger.max(fewest));
+            check(scene, sheet, &options)?;
+            // As if it had been asked for at first.
+            scales.iter_mut().flatten().for_each(|scale| *scale = 1.0);
+            rounds = 0;
         } else {
-            rounds += 1;
+            draft.grow(&small, sheet, &mut scales);
         }
         draft = draft.repacked(scene, sheet, &scales, &options, progress)?;
     }
