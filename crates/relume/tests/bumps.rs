@@ -17,7 +17,6 @@ fn run(folder: &Path, arguments: &[&str]) -> String {
 /// Means of blocks of 4 by 4 pixels of the picture that was drawn last.
 fn blocks(folder: &Path) -> Vec<f32> {
     let (width, _, pixels) = probe_io::read_picture(&folder.join("a.exr")).unwrap();
-    let width = width as usize;
     let mut sums = vec![0.0; pixels.len() / 16];
     for (k, pixel) in pixels.iter().enumerate() {
         let (x, y) = (k % width, k / width);
