@@ -198,9 +198,9 @@ fn memory_is_counted_can_fail() {
 #[test]
 fn other_versions_and_conventions_are_unsupported() {
     let mut bytes = sample::sample().to_bytes().unwrap();
-    bytes[8] = 5;
+    bytes[8] = 6;
     sign(&mut bytes);
-    assert!(matches!(refuse(&bytes, "version 5"), Error::Unsupported(_)));
+    assert!(matches!(refuse(&bytes, "version 6"), Error::Unsupported(_)));
     let mut prt = sample::sample();
     prt.convention = "condon-shortley".into();
     assert!(matches!(refuse(&prt.to_bytes().unwrap(), "another convention"), Error::Unsupported(_)));
