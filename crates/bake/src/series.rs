@@ -11,13 +11,13 @@ pub(crate) const FIRST: u32 = 24;
 /// Bounces that are expected at most where their number is left open.
 pub(crate) const EXPECTED: u32 = FIRST + 12;
 /// Most bounces where their number is left open; what is missing after them is told.
-pub(crate) const MOST: u32 = 256;
+pub(crate) const MOST: u32 = 2048;
 /// Part of a bounce that may differ from the one before times the ratio where a tail is summed.
 const SETTLED: f64 = 0.1;
 
 /// A tail that was summed.
 pub(crate) struct Tail {
-    /// All bounces after the last but for what `rest` brings.
+    /// All bounces after the last but for what `rest` and those after it bring.
     pub(crate) sum: Field,
     /// What takes the place of the next bounce.
     pub(crate) rest: Field,
@@ -26,6 +26,8 @@ pub(crate) struct Tail {
 }
 
 /// Sums the tail after `last`, which `next` follows; none where the bounces have not settled to one ratio yet, or do not fade.
+///
+/// For any factor `f` the sum of `f last` leaves the residual `(1 + f) next - f last`.
 pub(crate) fn tail(last: &Field, next: &Field) -> Option<Tail> {
     let mut ratios = Vec::with_capacity(last.channels);
     for channel in 0..last.channels {
@@ -43,10 +45,19 @@ pub(crate) fn tail(last: &Field, next: &Field) -> Option<Tail> {
         ratios.push(ratio);
     }
     let ratio = ratios.iter().copied().fold(0.0, f64::max);
-    let sum = last.combined(next, &|c| [(ratios[c] / (1.0 - ratios[c])) as f32, 0.0]);
-    // Of x = last and A x = next the sum q / (1 - q) x leaves the residual (A x - q x) / (1 - q).
-    let rest = last.combined(next, &|c| [(-ratios[c] / (1.0 - ratios[c])) as f32, (1.0 / (1.0 - ratios[c])) as f32]);
-    Some(Tail { sum, rest, ratio })
+    Some(tail_of(last, next, ratio, &|c| ratios[c] / (1.0 - ratios[c])))
+}
+
+/// Half of the last bounce taken back: what alternates between two surfaces that face each other, and hides the ratio, is gone from the
+/// residual.
+pub(crate) fn smoothed(last: &Field, next: &Field) -> Tail {
+    tail_of(last, next, 0.0, &|_| -0.5)
+}
+
+fn tail_of(last: &Field, next: &Field, ratio: f64, factor: &dyn Fn(usize) -> f64) -> Tail {
+    let sum = last.combined(next, &|c| [factor(c) as f32, 0.0]);
+    let rest = last.combined(next, &|c| [-factor(c) as f32, (1.0 + factor(c)) as f32]);
+    Tail { sum, rest, ratio }
 }
 
 /// What follows a change where each is to the one before as `ratio`.
@@ -100,6 +111,23 @@ mod tests {
             assert!((found / all[i] - 1.0).abs() < 1e-4, "{found}, not {}", all[i]);
             assert!((sum[i] / all[i] - 1.0).abs() > 1e-5 || i == 2, "can fail: the rest is a part of it");
         }
+    }
+
+    /// Light that goes to and fro between two surfaces, one of them brighter in each bounce: no ratio, until half a bounce is taken back.
+    #[test]
+    fn what_alternates_is_smoothed() {
+        let swap = |x: [f64; 3]| [0.99 * x[1], 0.99 * x[0], 0.0];
+        let fields = |x: [f64; 3]| [field(x.map(|x| x as f32)), field(swap(x).map(|x| x as f32))];
+        let [last, next] = fields([1.0, 0.2, 0.0]);
+        assert!(tail(&last, &next).is_none(), "it alternates");
+        let smooth = smoothed(&last, &next);
+        let rest = values(&smooth.rest);
+        let settled = tail(&smooth.rest, &field(swap(rest).map(|x| x as f32))).expect("settled");
+        let found =
+            [0, 1].map(|i| values(&smooth.sum)[i] + rest[i] + values(&settled.sum)[i] + values(&settled.rest)[i]);
+        // (I - A)^-1 A (1, 0.2), by hand.
+        let exact = [0.99 * (0.2 + 0.99), 0.99 * (1.0 + 0.99 * 0.2)].map(|x| x / (1.0 - 0.99 * 0.99));
+        (0..2).for_each(|i| assert!((found[i] / exact[i] - 1.0).abs() < 1e-3, "{found:?}, not {exact:?}"));
     }
 
     #[test]

@@ -82,3 +82,17 @@ fn bounces_that_fade_have_no_tail() {
     let explicit = quiet(&scene, &settings(Bounces::Fixed(prt.achieved.bounces)));
     assert_eq!(prt.transfer.values, explicit.transfer.values, "to the bit");
 }
+
+/// Walls of `Kd 1`, and a lamp's quad below the ceiling between which light goes to and fro.
+#[test]
+fn the_white_box_of_others_ends() {
+    let Some(data) = testkit::data_dir() else { return testkit::skip("bounces of the Cornell box with white walls") };
+    let scene = scene::load(&data.join("scenes/cornell-box/cornell_box.obj")).expect("a good scene");
+    let prt = quiet(&scene, &settings(Bounces::Auto));
+    let (bounces, left) = (prt.achieved.bounces, prt.achieved.remainder.expect("its tail was summed"));
+    assert!(bounces < 120 && left <= 2.5e-3, "{bounces} bounces leave {left}");
+    let long = quiet(&scene, &settings(Bounces::Fixed(3000)));
+    let pairs = prt.transfer.values.iter().zip(&long.transfer.values);
+    let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(off < 3e-3, "{off} off explicit bounces");
+}

@@ -29,7 +29,13 @@ impl Run<'_> {
                 next.add(&glints);
             }
             repair.apply(&mut next);
-            let tail = if auto && n > series::FIRST { series::tail(&self.last, &next) } else { None };
+            let tail = match auto && n > series::FIRST {
+                true if n % 2 == 1 => {
+                    Some(series::tail(&self.last, &next).unwrap_or_else(|| series::smoothed(&self.last, &next)))
+                }
+                true => series::tail(&self.last, &next),
+                false => None,
+            };
             let summed = tail.is_some();
             if let Some(tail) = tail {
                 slowest = slowest.max(tail.ratio);
