@@ -9,7 +9,7 @@ use crate::found::{Found, add_sent};
 use crate::gather::{Gatherer, Worker};
 use crate::mirror::{MOST_BANDS, Mirrors};
 use crate::receivers::{Receiver, Receivers};
-use crate::senders::resolve;
+use crate::senders::shares;
 use crate::world::World;
 use coeff_io::Quality;
 use glam::Vec3;
@@ -307,12 +307,11 @@ impl<'a> Arrivals<'a> {
         true
     }
 
-    /// Adds what the corners of a triangle send, times a factor; without the direct light where that is given.
+    /// Adds what the corners of a triangle, or its cell, send, times a factor; without the direct light where that is given.
     fn add_scattered(&self, hit: &Hit, factors: [f32; 3], without: Option<&Field>, out: &mut [f32]) {
         let world = self.gatherer.world;
-        let corners = world.corners[hit.triangle as usize].map(|c| resolve(c, !hit.front, self.receivers));
         let channels = self.shape.channels;
-        for (corner, share) in corners.into_iter().zip([1.0 - hit.u - hit.v, hit.u, hit.v]) {
+        for (corner, share) in shares(world, self.receivers, hit.triangle, !hit.front, [hit.u, hit.v]) {
             for (channel, factor) in factors.iter().enumerate().take(channels) {
                 let factor = share * factor;
                 match &self.sent {

@@ -3,7 +3,9 @@
 mod bounce;
 
 use crate::account::account;
+use crate::between;
 use crate::bundle::{Baked, bundle};
+use crate::cells::Cells;
 use crate::directions::DirectionBank;
 use crate::extras::{Done, Extras, FixedLight};
 use crate::field::Field;
@@ -15,9 +17,10 @@ use crate::progress::{Progress, Stage};
 use crate::receivers::Receivers;
 use crate::refine::refined;
 use crate::repair::{Finding, Repair, emerge};
+use crate::summary::summarise;
 use crate::wanted::Wanted;
 use crate::{Error, settings};
-use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Quality, RepairCounts, Settings};
+use coeff_io::{Achieved, Bounces, Effect, Plan, Prt, Quality, Refine, RepairCounts, Settings};
 use scene::Scene;
 use sh_math::Bands;
 use std::borrow::Cow;
@@ -91,7 +94,10 @@ pub(crate) fn bake_then<T>(
     }
     extras.check_textures(scene)?;
     extras.check_light(prepared.plan.bands)?;
-    let Prepared { world, receivers, plan, traced } = prepared;
+    let Prepared { mut world, receivers, plan, traced } = prepared;
+    if settings.refine != Refine::Auto && simulates(&plan, Effect::Interreflection) {
+        world.cells = Cells::of(&world);
+    }
     let bands = Bands::new(plan.bands).expect("no more than the settings ask for");
     // Where nothing is traced no directions are needed: the smallest set stands in.
     let quality = if traced.is_empty() { Quality::Rays(settings::MIN_STRATIFIED) } else { settings.quality };
@@ -186,6 +192,14 @@ impl<'a> Run<'a> {
         let repair = Repair::plan(scene, &self.receivers, &self.findings);
         self.achieved.repairs = RepairCounts { inside: self.achieved.repairs.inside, ..repair.counts };
         repair.apply(&mut self.last);
+        between::measure(
+            &self.gatherer,
+            &self.receivers,
+            &self.last,
+            &self.monitor,
+            self.settings.seed,
+            &mut self.achieved,
+        )?;
         let mut transfer = self.last.clone();
         self.direct = self.gatherer.mirrors.map(|_| self.last.clone());
         if self.gatherer.hits {
@@ -208,7 +222,7 @@ impl<'a> Run<'a> {
         if openness.iter().all(|&o| o >= 1.0) {
             openness.clear();
         }
-        self.summarise(&repair);
+        summarise(&repair, self.receivers.permanent, &self.errors, &mut self.achieved);
         let (plan, achieved) = (self.plan.clone(), std::mem::take(&mut self.achieved));
         let mut prt = bundle(
             scene,
@@ -284,7 +298,7 @@ impl<'a> Run<'a> {
     fn first_pass(&mut self, ids: Vec<u32>, stage: Stage) -> Result<Vec<Chunk>, Error> {
         let (last, findings, errors) = (&mut self.last, &mut self.findings, &mut self.errors);
         let achieved = &mut self.achieved;
-        let glints = &mut self.glints;
+        let (glints, world) = (&mut self.glints, self.gatherer.world);
         let mut wanted = Wanted { worth: tolerance(self.settings.quality), ..Wanted::default() };
         let mut sink = |id: u32, seen: &Gathered| {
             last.set_direct(id, &seen.transfer, &seen.tinted);
@@ -303,12 +317,12 @@ impl<'a> Run<'a> {
                 glints.row_mut(id).fill(0.0);
             }
             if !finding.is_inside() {
-                wanted.note(id, seen);
+                wanted.note(id, seen, world);
             }
         };
         let chunks =
             gather_pass(&self.gatherer, &self.receivers, ids, stage, &mut self.room, &self.monitor, &mut sink)?;
-        wanted.add_to(&mut self.receivers, self.gatherer.world);
+        wanted.add_to(&mut self.receivers, world);
         self.check_memory()?;
         let n = self.receivers.list.len();
         self.last.grow(n);
@@ -327,26 +341,12 @@ impl<'a> Run<'a> {
             done = self.receivers.list.len() as u32;
             chunks.extend(self.first_pass(new, Stage::Helpers)?);
         }
+        self.gatherer.world.cells.complete(self.gatherer.world, &mut self.receivers);
         Ok(chunks)
     }
 
     /// Largest norm of a receiver's row that goes into the file, against an open receiver's.
     fn largest_norm(&self, field: &Field) -> f64 {
         (0..self.receivers.permanent as u32).map(|r| field.norm(r)).fold(0.0, f64::max) / self.gatherer.bank.open_norm
-    }
-
-    fn summarise(&mut self, repair: &Repair) {
-        let mut own = vec![true; self.receivers.permanent];
-        repair.targets().for_each(|id| own[id as usize] = false);
-        let mut errors: Vec<(f32, u32)> = (0..self.receivers.permanent as u32)
-            .filter(|&id| own[id as usize])
-            .map(|id| (self.errors[id as usize], id))
-            .collect();
-        errors.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        if let Some(&(worst, id)) = errors.last() {
-            let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize].0;
-            self.achieved.error = [at(0.5), at(0.95), worst];
-            self.achieved.worst_receiver = id;
-        }
     }
 }

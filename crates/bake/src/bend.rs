@@ -8,7 +8,7 @@ use crate::gather::{Gatherer, Worker};
 use crate::passes::Monitor;
 use crate::progress::Stage;
 use crate::receivers::{FaceSums, Receiver};
-use crate::split::{Edge, edges, length, sorted};
+use crate::split::{Edge, EdgePlace, edge_place, edges, sorted};
 use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
@@ -40,15 +40,6 @@ pub(crate) struct Bends<'a> {
     middles: Vec<BTreeMap<Edge, Look>>,
 }
 
-/// An edge by the bits of its ends' positions: the same for all meshes that share it.
-pub(crate) type Place = [[u32; 3]; 2];
-
-/// Where an edge lies.
-pub(crate) fn place(mesh: &Mesh, edge: Edge) -> Place {
-    let [a, b] = edge.map(|v| mesh.positions[v as usize].to_array().map(f32::to_bits));
-    [a.min(b), a.max(b)]
-}
-
 impl<'a> Bends<'a> {
     /// For a scene that lies on the surfaces of `world`; looks at nothing yet.
     pub(crate) fn new(world: &'a World<'a>, scene: &Scene) -> Self {
@@ -60,16 +51,16 @@ impl<'a> Bends<'a> {
         Self { world, bank, bands, vertices, middles: vec![BTreeMap::new(); scene.meshes.len()] }
     }
 
-    /// The edges longer than `shortest` along which transfer bends, looking only at those that are new.
+    /// The edges that `may_halve` names along which transfer bends, looking only at those that are new.
     pub(crate) fn find(
         &mut self,
         scene: &Scene,
-        shortest: f32,
+        may_halve: &dyn Fn(&Mesh, Edge) -> bool,
         monitor: &Monitor<'_>,
-    ) -> Result<HashSet<Place>, Error> {
+    ) -> Result<HashSet<EdgePlace>, Error> {
         let mut bent = HashSet::new();
         let unseen: Vec<_> =
-            scene.meshes.iter().enumerate().map(|(index, mesh)| self.unseen(index, mesh, shortest)).collect();
+            scene.meshes.iter().enumerate().map(|(index, mesh)| self.unseen(index, mesh, may_halve)).collect();
         let ends: Vec<BTreeSet<usize>> = unseen.iter().enumerate().map(|(index, new)| self.ends(index, new)).collect();
         // One count for all meshes: progress runs once from none to all.
         let total = unseen.iter().map(|new| new.len() as u64).chain(ends.iter().map(|e| e.len() as u64)).sum();
@@ -84,7 +75,7 @@ impl<'a> Bends<'a> {
             let looks = self.look(&receivers, two_sided(scene, index), (total, monitor))?;
             for ((edge, _), look) in new.into_iter().zip(looks) {
                 if self.bend(index, edge, &look) > BEND {
-                    bent.insert(place(mesh, edge));
+                    bent.insert(edge_place(mesh, edge));
                 }
                 self.middles[index].insert(edge, look);
             }
@@ -131,11 +122,11 @@ impl<'a> Bends<'a> {
         Ok(())
     }
 
-    fn unseen(&self, index: usize, mesh: &Mesh, shortest: f32) -> Vec<(Edge, EdgeSums)> {
+    fn unseen(&self, index: usize, mesh: &Mesh, may_halve: &dyn Fn(&Mesh, Edge) -> bool) -> Vec<(Edge, EdgeSums)> {
         let mut sums: BTreeMap<Edge, EdgeSums> = BTreeMap::new();
         for triangle in &mesh.triangles {
             for edge in edges(triangle).map(sorted) {
-                if length(mesh, edge) > shortest && !self.middles[index].contains_key(&edge) {
+                if !self.middles[index].contains_key(&edge) && may_halve(mesh, edge) {
                     sums.entry(edge).or_default().add(mesh, triangle);
                 }
             }

@@ -4,7 +4,7 @@
 //! Everything runs in a fixed order of operations, whatever the number of threads.
 
 mod clusters;
-mod eigen;
+pub(crate) mod eigen;
 mod sketch;
 
 use clusters::Clusters;

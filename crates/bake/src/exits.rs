@@ -3,13 +3,12 @@
 //! A vertex inside a body holds what its surface sees where it comes out. On a capital under a wall one edge comes out before the wall, in the
 //! light, and another beside it, in the shade of an arch: one value cannot serve both, so each gets a vertex of its own.
 
-use crate::bend::{Place, place};
 use crate::directions::DirectionBank;
 use crate::gather::{Gatherer, Worker};
 use crate::passes::Monitor;
 use crate::receivers::{FaceSums, Receiver};
 use crate::repair::{entry, is_inside};
-use crate::split::{Edge, cut, edges};
+use crate::split::{Edge, EdgePlace as Place, cut, edge_place as place, edges};
 use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Quality, Settings};

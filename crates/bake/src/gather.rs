@@ -309,7 +309,7 @@ impl Gatherer<'_> {
         if index < self.permanent && !crate::repair::is_inside(out.openness, out.inside_share) {
             out.near = near_points(self.world, &weighed, self.worth);
         }
-        out.hits.extend(weighed.iter().map(|(hit, reflected)| packed(hit, *reflected, &out.near)));
+        out.hits.extend(weighed.iter().map(|(hit, reflected)| packed(self.world, hit, *reflected, &out.near)));
         if let Some(mirrors) = self.mirrors {
             mirrors.add_mirrored(self.world, (&found, &blockers.filters), out);
         }

@@ -37,9 +37,11 @@ pub(crate) enum Source {
     Near(u32),
 }
 
-/// A hit that refers to the near point on its side of its triangle where there is one.
-pub(crate) fn packed(hit: &Hit, reflected: Vec3, near: &[NearPoint]) -> PackedHit {
-    let found = near.binary_search_by_key(&(hit.triangle, hit.front), |point| (point.triangle, point.front));
+/// A hit that refers to the near point on its side of its triangle, or of its cell, where there is one.
+pub(crate) fn packed(world: &World<'_>, hit: &Hit, reflected: Vec3, near: &[NearPoint]) -> PackedHit {
+    let cell = |point: &NearPoint| world.cells.at(point.triangle, point.barycentrics);
+    let key = (hit.triangle, hit.front, world.cells.at(hit.triangle, [hit.u, hit.v]));
+    let found = near.binary_search_by_key(&key, |point| (point.triangle, point.front, cell(point)));
     PackedHit {
         source: found.map_or(Source::Triangle(hit.triangle), |index| Source::Near(index as u32)),
         is_back: found.is_err() && !hit.front,
@@ -48,14 +50,16 @@ pub(crate) fn packed(hit: &Hit, reflected: Vec3, near: &[NearPoint]) -> PackedHi
     }
 }
 
-/// The middles of what a receiver sees of each triangle that is nearer than it is large, where that sends on more than
+/// The middles of what a receiver sees of each triangle, or cell of one, that is nearer than it is large, where that sends on more than
 /// `worth` of the light, by triangle and side.
 ///
 /// A surface that close lies in the shade of whatever the receiver stands on; its vertices, farther off, do not.
 pub(crate) fn near_points(world: &World<'_>, hits: &[(Hit, Vec3)], worth: f32) -> Vec<NearPoint> {
-    let mut near: Vec<&(Hit, Vec3)> = hits.iter().filter(|(hit, _)| hit.t < world.extent(hit.triangle)).collect();
-    near.sort_by_key(|(hit, _)| (hit.triangle, hit.front));
-    let groups = near.chunk_by(|(a, _), (b, _)| (a.triangle, a.front) == (b.triangle, b.front));
+    let extent = |triangle| world.extent(triangle) / world.cells.sides(triangle) as f32;
+    let mut near: Vec<&(Hit, Vec3)> = hits.iter().filter(|(hit, _)| hit.t < extent(hit.triangle)).collect();
+    let key = |hit: &Hit| (hit.triangle, hit.front, world.cells.at(hit.triangle, [hit.u, hit.v]));
+    near.sort_by_key(|(hit, _)| key(hit));
+    let groups = near.chunk_by(|(a, _), (b, _)| key(a) == key(b));
     let middle = |group: &[&(Hit, Vec3)]| {
         let share: f32 = group.iter().map(|(_, reflected)| reflected.max_element()).sum();
         let mean = |of: fn(&Hit) -> f32| {

@@ -188,7 +188,7 @@ impl Mirrors {
                 sums.iter_mut().zip(&row).for_each(|(sum, x)| *sum += tint * x);
             }
             if glance.closed > 0.0 {
-                out.late.push(packed(hit, glance.tint * (glance.closed * weight), &out.near));
+                out.late.push(packed(world, hit, glance.tint * (glance.closed * weight), &out.near));
             }
         }
     }

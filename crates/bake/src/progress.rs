@@ -24,6 +24,8 @@ pub enum Stage {
     Visibility,
     /// The same for the backs of surfaces and for surfaces very near to a receiver, where light reaches them.
     Helpers,
+    /// What points between receivers see, to tell how far interpolation errs.
+    Between,
     /// The n-th bounce, from 1.
     Bounce(u32),
     /// What surfaces that shine see.
@@ -41,6 +43,7 @@ impl std::fmt::Display for Stage {
             Self::Refinement => write!(f, "refinement"),
             Self::Visibility => write!(f, "visibility"),
             Self::Helpers => write!(f, "backs and near surfaces"),
+            Self::Between => write!(f, "error between receivers"),
             Self::Bounce(n) => write!(f, "bounce {n}"),
             Self::Gloss => write!(f, "gloss"),
             Self::Texels => write!(f, "texels"),

@@ -36,6 +36,8 @@ pub struct Receivers {
     pub back_of: Vec<u32>,
     /// Of each receiver the first of those at its near points; `u32::MAX` or missing where it has none.
     pub(crate) near_of: Vec<u32>,
+    /// Of each cell the receivers on its front and its back; empty where no triangle has cells.
+    pub(crate) cell_of: Vec<u32>,
     /// Normals that had to be replaced by those of the faces.
     pub replaced_normals: usize,
 }
@@ -50,7 +52,7 @@ impl Receivers {
             permanent: 0,
             back_of: Vec::new(),
             near_of: Vec::new(),
-
+            cell_of: Vec::new(),
             replaced_normals: 0,
         };
         for mesh in &scene.meshes {

@@ -1,13 +1,16 @@
 //! Splits large triangles, since a vertex is all that can hold a shadow.
 
-use crate::bend::{Bends, place};
+use crate::bend::Bends;
 use crate::exits::cut_at_exits;
 use crate::facts::Facts;
 use crate::passes::Monitor;
 use crate::plan::{allowed, world};
 use crate::progress::Stage;
+use crate::proximity::Proximity;
 use crate::receivers::Receivers;
-use crate::split::{Edge, MOST_TRIANGLES, edges, halve, length};
+use crate::small::cubes;
+use crate::split::{Edge, MOST_TRIANGLES, edge_place, edges, halve, length};
+use crate::towards::{most_triangles, towards, triangles};
 use crate::world::World;
 use crate::{Error, ProgressFn, settings};
 use coeff_io::{Effect, Refine, Settings};
@@ -17,11 +20,17 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 /// Triangles that a scene of few, large ones is split into at least.
-const LEAST_TRIANGLES: f64 = 20_000.0;
+pub(crate) const LEAST_TRIANGLES: f64 = 20_000.0;
 /// Rounds of halving; each halves the longest edges, so that these reach 1/4096 of the first.
 const ROUNDS: usize = 12;
 /// Rounds of halving where transfer bends: edges down to an eighth of the even ones are halved.
 const BEND_ROUNDS: i32 = 3;
+/// The same with those rounds in which only edges near small objects are halved.
+const SMALL_ROUNDS: i32 = 8;
+/// Shortest edge that is halved beside a small object, in its sizes.
+const SMALL_PART: f32 = 1.0 / 16.0;
+/// Sizes of objects that even edges are too long for, in those edges. What is smaller shades less than one picture element of most views.
+const SMALL: [f32; 2] = [1.0 / 512.0, 0.5];
 
 /// The scene with every edge at most as long as the settings say; borrowed where nothing is to be split.
 ///
@@ -68,12 +77,15 @@ pub fn refine_watched<'a>(
             let monitor = Monitor::new(progress);
             monitor.begin(Stage::Preparation, 1);
             monitor.check()?;
-            let world = world(scene, &Facts::of_materials(scene, settings, false), settings)?;
+            let facts = Facts::of_materials(scene, settings, false);
+            let world = world(scene, &facts, settings)?;
             if !has_shadows(scene, &world) {
                 return Ok(Cow::Borrowed(scene));
             }
             let longest = even_edge(scene);
-            let split = at_bends(evenly(scene, longest)?, longest, &world, &monitor)?;
+            let small = cubes(scene, &|m| facts.materials[m].blocks, SMALL.map(|part| part * longest));
+            let (refined, small) = towards(evenly(scene, longest)?, Proximity::new(small))?;
+            let split = at_bends(refined, longest, &small, &world, &monitor)?;
             cut_at_exits(split, &world, &monitor)
         }
     }
@@ -118,23 +130,32 @@ fn evenly(scene: &Scene, longest: f32) -> Result<Cow<'_, Scene>, Error> {
     Ok(Cow::Owned(refined))
 }
 
-/// Halves the edges along which transfer bends, while they are longer than a part of the even ones.
+/// Halves the edges along which transfer bends, while they are longer than a part of the even ones or of small objects near them.
 fn at_bends<'a>(
     mut scene: Cow<'a, Scene>,
     longest: f32,
+    small: &Proximity,
     world: &World<'_>,
     monitor: &Monitor<'_>,
 ) -> Result<Cow<'a, Scene>, Error> {
     let mut bends = Bends::new(world, &scene);
-    for round in 0..BEND_ROUNDS {
-        let shortest = longest * 0.5f32.powi(round + 1);
-        let bent = bends.find(&scene, shortest, monitor)?;
+    let most = most_triangles(&scene);
+    let none = Proximity::default();
+    for round in 0..if small.is_empty() { BEND_ROUNDS } else { SMALL_ROUNDS } {
+        let shortest = if round < BEND_ROUNDS { longest * 0.5f32.powi(round + 1) } else { f32::INFINITY };
+        let small = if triangles(&scene) > most { &none } else { small };
+        let may_halve = |mesh: &Mesh, edge: Edge| {
+            let [a, b] = edge.map(|v| mesh.positions[v as usize]);
+            let length = length(mesh, edge);
+            length > shortest || small.may_halve(0.5 * (a + b), length, SMALL_PART)
+        };
+        let bent = bends.find(&scene, &may_halve, monitor)?;
         if bent.is_empty() {
             break;
         }
         let name = scene.name.clone();
         for (index, mesh) in scene.to_mut().meshes.iter_mut().enumerate() {
-            let middles = halve(mesh, |mesh, edge| bent.contains(&place(mesh, edge)));
+            let middles = halve(mesh, |mesh, edge| bent.contains(&edge_place(mesh, edge)));
             bends.halved(index, middles);
             check_count(&name, mesh)?;
         }
@@ -142,7 +163,7 @@ fn at_bends<'a>(
     Ok(scene)
 }
 
-fn check_count(scene: &str, mesh: &Mesh) -> Result<(), Error> {
+pub(crate) fn check_count(scene: &str, mesh: &Mesh) -> Result<(), Error> {
     if mesh.triangles.len() > MOST_TRIANGLES { Err(too_fine(scene, mesh.triangles.len())) } else { Ok(()) }
 }
 

@@ -8,7 +8,7 @@ use crate::world::World;
 /// One entry of a row: a receiver, and the share of what it sends that arrives, RGB.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sender {
-    /// A receiver, or a number among the near points of the row's receiver; see the bits.
+    /// A receiver, a cell, or a number among the near points of the row's receiver; see the bits.
     key: u32,
     pub(crate) weight: [f32; 3],
 }
@@ -17,13 +17,18 @@ pub(crate) struct Sender {
 const BACK: u32 = 1 << 31;
 /// Bit of [`Sender::key`] for a near point.
 const NEAR: u32 = 1 << 30;
+/// Bit of [`Sender::key`] for a cell.
+const CELL: u32 = 1 << 29;
 
 impl Sender {
     /// The receiver that sends to `receiver`; known once the backs and near points are.
     pub(crate) fn resolve(&self, receivers: &Receivers, receiver: u32) -> u32 {
-        let number = self.key & !(BACK | NEAR);
+        let number = self.key & !(BACK | NEAR | CELL);
         if self.key & NEAR != 0 {
             return receivers.near_of[receiver as usize] + number;
+        }
+        if self.key & CELL != 0 {
+            return receivers.cell_of[2 * number as usize + usize::from(self.key & BACK != 0)];
         }
         resolve(number, self.key & BACK != 0, receivers)
     }
@@ -33,6 +38,23 @@ impl Sender {
 pub(crate) fn resolve(vertex: u32, is_back: bool, receivers: &Receivers) -> u32 {
     let back = if is_back { receivers.back_of[vertex as usize] } else { NONE };
     if back == NONE { vertex } else { back }
+}
+
+/// The receivers that tell what a point of a traced triangle sends, with their shares: its corners, or its cell.
+pub(crate) fn shares(
+    world: &World<'_>,
+    receivers: &Receivers,
+    triangle: u32,
+    is_back: bool,
+    [u, v]: [f32; 2],
+) -> impl Iterator<Item = (u32, f32)> {
+    let corners = || world.corners[triangle as usize].map(|corner| resolve(corner, is_back, receivers));
+    let (of, count) = match world.cells.at(triangle, [u, v]) {
+        Some(cell) => ([receivers.cell_of[2 * cell as usize + usize::from(is_back)]; 3], 1),
+        None => (corners(), 3),
+    };
+    let shares = if count == 1 { [1.0, 0.0, 0.0] } else { [1.0 - u - v, u, v] };
+    of.into_iter().zip(shares).take(count)
 }
 
 /// The rows of the receivers of a chunk.
@@ -68,7 +90,7 @@ impl Senders {
     }
 }
 
-/// Replaces `row` by the senders of a receiver, each once: what is hit between vertices comes from the corners of the triangle.
+/// Replaces `row` by the senders of a receiver, each once: what is hit between vertices comes from the corners of the triangle, or from its cell.
 pub(crate) fn fill_row(world: &World<'_>, hits: &[PackedHit], row: &mut Vec<Sender>) {
     row.clear();
     for hit in hits {
@@ -76,6 +98,10 @@ pub(crate) fn fill_row(world: &World<'_>, hits: &[PackedHit], row: &mut Vec<Send
             Source::Near(index) => row.push(Sender { key: index | NEAR, weight: hit.reflected }),
             Source::Triangle(triangle) => {
                 let side = if hit.is_back { BACK } else { 0 };
+                if let Some(cell) = world.cells.at(triangle, hit.barycentrics) {
+                    row.push(Sender { key: cell | CELL | side, weight: hit.reflected });
+                    continue;
+                }
                 let [u, v] = hit.barycentrics;
                 for (corner, share) in world.corners[triangle as usize].into_iter().zip([1.0 - u - v, u, v]) {
                     row.push(Sender { key: corner | side, weight: hit.reflected.map(|x| x * share) });

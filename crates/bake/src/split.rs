@@ -10,6 +10,23 @@ pub(crate) const MOST_TRIANGLES: usize = 1 << 23;
 /// An edge by its vertices, the smaller first.
 pub(crate) type Edge = [u32; 2];
 
+/// A place by the bits of its coordinates.
+pub(crate) type Place = [u32; 3];
+
+/// The place of a point; zero and negative zero are one.
+pub(crate) fn place_of(point: Vec3) -> Place {
+    (point + 0.0).to_array().map(f32::to_bits)
+}
+
+/// An edge by the places of its ends: the same for all meshes that share it.
+pub(crate) type EdgePlace = [Place; 2];
+
+/// Where an edge lies.
+pub(crate) fn edge_place(mesh: &Mesh, edge: Edge) -> EdgePlace {
+    let [a, b] = edge.map(|v| place_of(mesh.positions[v as usize]));
+    [a.min(b), a.max(b)]
+}
+
 /// The edges of a triangle, in its winding.
 pub(crate) fn edges(&[a, b, c]: &[u32; 3]) -> [Edge; 3] {
     [[a, b], [b, c], [c, a]]

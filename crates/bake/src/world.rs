@@ -2,18 +2,19 @@
 
 use crate::Error;
 use crate::bodies::Bodies;
+use crate::cells::Cells;
 use crate::hit::NearPoint;
 use crate::receivers::Receiver;
 use crate::transmittance::Translucent;
 use glam::Vec3;
 use raytrace::{Hit, Ray, Tracer};
-use scene::{AlphaMode, Scene};
+use scene::{AlphaMode, Mesh, Scene};
 use sh_math::brdf::{DIELECTRIC, MEAN_DIFFUSE_LOSS, mean_environment_brdf};
 
 /// Bits 30 and 31 of a packed triangle say what was hit of it.
 const MAX_TRIANGLES: usize = (1 << 30) - 1;
 /// Vertices that fit beside the bits of senders.
-const MAX_VERTICES: usize = (1 << 30) - 1;
+const MAX_VERTICES: usize = (1 << 29) - 1;
 
 /// All surfaces that block light, flattened.
 pub(crate) struct World<'a> {
@@ -33,6 +34,8 @@ pub(crate) struct World<'a> {
     pub(crate) shine: Vec<Shine>,
     /// Which triangles bound bodies.
     pub(crate) bodies: Bodies,
+    /// Cells of triangles that are too large to carry bounces.
+    pub(crate) cells: Cells,
 }
 
 /// What becomes of light that a material mirrors, on its way to other surfaces.
@@ -64,6 +67,7 @@ impl<'a> World<'a> {
             trace_all: false,
             shine: Vec::new(),
             bodies: Bodies::default(),
+            cells: Cells::default(),
         };
         let mut positions: Vec<Vec3> = Vec::new();
         let mut masked = Vec::new();
@@ -202,18 +206,8 @@ impl<'a> World<'a> {
 
     /// A receiver at a point of a traced triangle, on one side.
     pub(crate) fn receiver_at(&self, point: &NearPoint) -> Receiver {
-        let [a, b, c] = self.points(point.triangle);
-        let [u, v] = point.barycentrics;
-        let mix = |a: Vec3, b: Vec3, c: Vec3| a + u * (b - a) + v * (c - a);
         let (mesh, local) = self.locate(point.triangle);
-        let mesh = &self.scene.meshes[mesh];
-        let shading = mesh.triangles[local].map(|v| mesh.normals.get(v as usize).copied());
-        let shading = match shading {
-            [Some(a), Some(b), Some(c)] => Some(mix(a, b, c)),
-            _ => None,
-        };
-        let at = mix(a, b, c);
-        let (receiver, _) = Receiver::new(at, shading, (b - a).cross(c - a), at);
+        let receiver = receiver_on(&self.scene.meshes[mesh], local, point.barycentrics);
         if point.front { receiver } else { receiver.back() }
     }
 
@@ -229,6 +223,18 @@ impl<'a> World<'a> {
         let [mesh, local] = self.sources[triangle as usize];
         (mesh as usize, local as usize)
     }
+}
+
+/// A receiver on the front of a triangle of a mesh.
+pub(crate) fn receiver_on(mesh: &Mesh, triangle: usize, [u, v]: [f32; 2]) -> Receiver {
+    let [a, b, c] = mesh.triangles[triangle].map(|v| mesh.positions[v as usize]);
+    let mix = |a: Vec3, b: Vec3, c: Vec3| a + u * (b - a) + v * (c - a);
+    let shading = match mesh.triangles[triangle].map(|v| mesh.normals.get(v as usize).copied()) {
+        [Some(a), Some(b), Some(c)] => Some(mix(a, b, c)),
+        _ => None,
+    };
+    let at = mix(a, b, c);
+    Receiver::new(at, shading, (b - a).cross(c - a), at).0
 }
 
 fn check_count(scene: &Scene, what: &'static str, count: usize, limit: usize) -> Result<(), Error> {

@@ -67,6 +67,57 @@ fn surface_stays_the_same_can_fail() {
     assert!(open_edges(&scene) > 0, "a T-junction must be seen");
 }
 
+/// Vertices of one mesh that lie within an edge of another triangle, which lacks them: pictures have pinholes along such edges.
+fn junctions(scene: &Scene) -> usize {
+    let points: Vec<Vec3> = scene.meshes.iter().flat_map(|m| m.positions.iter().copied()).collect();
+    let mut by_x: Vec<Vec3> = points;
+    by_x.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).expect("numbers"));
+    by_x.dedup();
+    let mut found = 0;
+    for mesh in &scene.meshes {
+        for t in &mesh.triangles {
+            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+                let (a, b) = (mesh.positions[a as usize], mesh.positions[b as usize]);
+                let (low, high) = (a.min(b), a.max(b));
+                let first = by_x.partition_point(|p| p.x < low.x - 1e-6);
+                for p in by_x[first..].iter().take_while(|p| p.x <= high.x + 1e-6) {
+                    let (way, along) = (*p - a, (b - a).normalize());
+                    let far = way.dot(along);
+                    let margin = 1e-3 * (b - a).length();
+                    found += usize::from(
+                        far > margin && far < (b - a).length() - margin && (way - far * along).length() < 1e-5,
+                    );
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Refinement makes no such vertices where there were none.
+#[test]
+fn splitting_makes_no_junctions() {
+    for name in ["closed-room", "cornell-box", "sphere-on-plane"] {
+        let scene = scene::builtin(name).expect("builtin");
+        let refined = refine(&scene, &with(Refine::Auto)).expect("splits");
+        assert_eq!(junctions(&refined), junctions(&scene), "{name}");
+    }
+}
+
+#[test]
+fn splitting_makes_no_junctions_can_fail() {
+    let mut scene = scene::builtin("closed-room").expect("builtin");
+    assert_eq!(junctions(&scene), 0, "as it is written");
+    let mesh = &mut scene.meshes[0];
+    let [a, b, c] = mesh.triangles[0];
+    let middle = mesh.positions.len() as u32;
+    mesh.positions.push(0.5 * (mesh.positions[a as usize] + mesh.positions[b as usize]));
+    mesh.normals.push(mesh.normals[a as usize]);
+    mesh.triangles[0] = [a, middle, c];
+    mesh.triangles.push([middle, b, c]);
+    assert!(junctions(&scene) > 0, "a vertex on one side of an edge is seen");
+}
+
 /// Two meshes that share a border stay joined, since only the length of an edge decides.
 #[test]
 fn meshes_stay_joined() {

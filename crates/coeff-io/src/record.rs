@@ -113,7 +113,7 @@ pub struct Achieved {
     pub maps: Option<MapRecord>,
     /// What gloss and transfer textures took and reached, where there are any.
     pub gloss: Option<GlossRecord>,
-    /// Error of the transfer between receivers, as renderers interpolate it, against the transfer measured at points
+    /// Error of the direct transfer between receivers, as renderers interpolate it, against the transfer measured at points
     /// there: median, 95th percentile, worst; none where it was not measured. In the supplement.
     #[serde(skip)]
     pub interpolation: Option<[f32; 3]>,
@@ -121,6 +121,9 @@ pub struct Achieved {
     /// in closed form; none where they ended by themselves or at a number asked for. In the supplement.
     #[serde(skip)]
     pub remainder: Option<f32>,
+    /// A receiver at a corner of the triangle that holds the worst of those points. In the supplement.
+    #[serde(skip)]
+    pub worst_between: Option<u32>,
 }
 
 /// What gloss and transfer textures took and reached.

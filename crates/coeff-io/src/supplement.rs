@@ -15,6 +15,9 @@ pub struct Supplement {
     pub interpolation: Option<[f32; 3]>,
     /// [`crate::Achieved::remainder`].
     pub remainder: Option<f32>,
+    /// [`crate::Achieved::worst_between`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub worst_between: Option<u32>,
 }
 
 impl Supplement {
@@ -26,6 +29,7 @@ impl Supplement {
             unlit: unlit.collect(),
             interpolation: header.achieved.interpolation,
             remainder: header.achieved.remainder,
+            worst_between: header.achieved.worst_between,
         }
     }
 
@@ -53,6 +57,7 @@ impl Supplement {
         header.origin = supplement.origin;
         header.achieved.interpolation = supplement.interpolation;
         header.achieved.remainder = supplement.remainder;
+        header.achieved.worst_between = supplement.worst_between;
         let materials = header.materials.len();
         for index in supplement.unlit {
             let material = header.materials.get_mut(index as usize).ok_or_else(|| {

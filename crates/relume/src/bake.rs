@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
-use crate::{interrupt, look, output, settings, timed};
+use crate::{interpolation, interrupt, look, output, settings, timed};
 use anyhow::{Context, Result};
 use bake::Extras;
 use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
@@ -169,6 +169,12 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
     if let Some(warning) = crate::bounces::warning(prt) {
         console.notice(&warning);
     }
+    if let Some(text) = interpolation::text(prt) {
+        console.notice(&format!("error between receivers: {text}"));
+    }
+    if let Some(warning) = interpolation::warning(prt) {
+        console.notice(&warning);
+    }
     if let Some(maps) = &achieved.maps {
         console.notice(&light_maps(maps, prt.settings.quality));
     }
@@ -253,12 +259,20 @@ pub(crate) fn gloss_text(gloss: &coeff_io::GlossRecord, quality: Quality) -> Str
 
 /// Where the receiver with the worst error stands.
 pub(crate) fn worst_place(prt: &Prt) -> String {
-    let id = prt.achieved.worst_receiver;
+    place(prt, prt.achieved.worst_receiver)
+}
+
+/// Where a receiver stands.
+pub(crate) fn place(prt: &Prt, id: u32) -> String {
     let place = prt.geometry.positions.get(id as usize).copied().unwrap_or_default();
-    let [x, y, z] = std::array::from_fn(|k| prt.origin[k] + f64::from(place[k]));
+    let [x, y, z]: [f64; 3] = std::array::from_fn(|k| prt.origin[k] + f64::from(place[k]));
+    format!("at receiver {id}, ({x:.4}, {y:.4}, {z:.4}) on '{}'", mesh_of(prt, id))
+}
+
+/// Name of the mesh of a receiver.
+pub(crate) fn mesh_of(prt: &Prt, id: u32) -> &str {
     let of = |mesh: &&coeff_io::Mesh| (mesh.first_vertex..mesh.first_vertex + mesh.vertices).contains(&id);
-    let mesh = prt.meshes.iter().find(of).map_or("", |mesh| mesh.name.as_str());
-    format!("at receiver {id}, ({x:.4}, {y:.4}, {z:.4}) on '{mesh}'")
+    prt.meshes.iter().find(of).map_or("", |mesh| mesh.name.as_str())
 }
 
 /// The achieved error in words; a fixed number of rays is traced without an estimate.

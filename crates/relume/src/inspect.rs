@@ -56,6 +56,9 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     if prt.achieved.error[2] > 0.0 && !options.json {
         console.print(&format!("worst error {}\n", crate::bake::worst_place(&prt)))?;
     }
+    if let Some(text) = crate::interpolation::text(&prt).filter(|_| !options.json) {
+        console.print(&format!("error between receivers {text}\n"))?;
+    }
     let picture = path.with_extension("png");
     console.next(&format!("relume render {} --probe builtin:sky -o {}", path.display(), picture.display()));
     Ok(())

@@ -18,6 +18,7 @@ mod inspect;
 mod inspect_gloss;
 mod inspect_maps;
 mod inspect_words;
+mod interpolation;
 mod interrupt;
 mod lens;
 mod light;

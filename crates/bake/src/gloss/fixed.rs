@@ -8,7 +8,7 @@ use crate::maps::arrive_as;
 use crate::mirror::{MOST_BANDS, Mirrors};
 use crate::progress::Stage;
 use crate::receivers::Receiver;
-use crate::senders::resolve;
+use crate::senders::shares;
 use glam::Vec3;
 use raytrace::Hit;
 use sh_math::Rgb;
@@ -88,8 +88,7 @@ impl<'a> FixedBounces<'a> {
         let world = self.done.gatherer.world;
         let albedo = world.sent(hit).to_array();
         out.fill(0.0);
-        let corners = world.corners[hit.triangle as usize].map(|c| resolve(c, !hit.front, self.done.receivers));
-        for (corner, share) in corners.into_iter().zip([1.0 - hit.u - hit.v, hit.u, hit.v]) {
+        for (corner, share) in shares(world, self.done.receivers, hit.triangle, !hit.front, [hit.u, hit.v]) {
             let radiance = self.scattered[table][corner as usize];
             out.iter_mut().zip(radiance).zip(albedo).for_each(|((sum, x), albedo)| *sum += share * albedo * x);
         }
