@@ -1,4 +1,7 @@
 //! MTL libraries: which files they are, and their statements by material.
+//!
+//! Statements are read by `tobj` from a text that was made canonical: as they stand in files, one that is odd ends its
+//! reading or makes it panic.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -51,29 +54,33 @@ impl Library {
     }
 
     fn add(&mut self, text: &str, library: &str, near: &str, report: &mut Report) {
-        // Statements before the first name belong to nothing.
-        let mut current: Option<Source> = None;
+        let mut warn = |object: String, message: String| report.warnings.push(Warning { object, message });
+        let mut cleaned = String::new();
+        // Statements before the first name, or after one that is missing, belong to nothing.
+        let mut named = false;
         for (line, statement) in statements(text) {
             let (word, rest) = keyword(&statement);
             let lower = word.to_ascii_lowercase();
-            let read = if lower == "newmtl" {
-                self.finish(current.take());
-                let new = || Source { name: rest.to_owned(), near: near.to_owned(), ..Source::default() };
-                current = (!rest.is_empty()).then(new);
-                current.is_some()
-            } else {
-                current.as_mut().unwrap_or(&mut Source::default()).read(&lower, rest).is_some()
-            };
-            if !read {
-                let object = format!("mtllib {library}, line {line}: {:?}", statement.trim());
-                report.warnings.push(Warning { object, message: "cannot be read and was ignored".into() });
+            let read = canonical(&lower, rest);
+            if lower == "newmtl" {
+                named = read.is_some();
+            }
+            match read {
+                Some(read) if named => cleaned.push_str(&read),
+                Some(_) => {}
+                None => {
+                    let object = format!("mtllib {library}, line {line}: {:?}", statement.trim());
+                    warn(object, "cannot be read and was ignored".into());
+                }
             }
         }
-        self.finish(current);
+        match tobj::load_mtl_buf(&mut cleaned.as_bytes()) {
+            Ok((materials, _)) => materials.into_iter().for_each(|m| self.push(Source::new(m, near))),
+            Err(error) => warn(format!("mtllib {library}"), error.to_string()),
+        }
     }
 
-    fn finish(&mut self, material: Option<Source>) {
-        let Some(mut material) = material else { return };
+    fn push(&mut self, mut material: Source) {
         let index = self.materials.len();
         self.exact.insert(material.name.clone(), index);
         for cut in [Some(name(&material.name)), before_hash(&material.name)].into_iter().flatten() {
@@ -85,45 +92,72 @@ impl Library {
 }
 
 impl Source {
-    /// Obeys one statement; `None` where it cannot be read.
-    fn read(&mut self, keyword: &str, rest: &str) -> Option<()> {
-        match keyword {
-            "kd" => self.diffuse = Some(color(rest)?),
-            "ks" => self.specular = Some(color(rest)?),
-            "ke" => self.emissive = Some(color(rest)?),
-            "ka" => drop(color(rest)?),
-            "ns" => self.exponent = Some(scalar(rest)?),
-            "d" => self.opacity = Some(scalar(rest)?),
-            "tr" => self.transparency = Some(scalar(rest)?),
-            "pr" => self.roughness = Some(scalar(rest)?),
-            "pm" => self.metallic = Some(scalar(rest)?),
-            "illum" => self.illumination = Some(words(rest).next()?.parse().ok()?),
-            "map_kd" => self.color_map = Some(Map::parse(rest)?),
-            "map_d" => self.coverage_map = Some(Map::parse(rest)?),
-            "norm" => self.normal_map = Some(Map::parse(rest)?),
-            "map_ke" => self.emissive_map = Some(Map::parse(rest)?),
-            "bump" | "map_bump" => self.has_bump = Map::parse(rest).map(|_| true)?,
-            // Comments and everything that has no meaning here.
-            _ => {}
+    /// What a material says that was read from [`canonical`] statements.
+    fn new(material: tobj::Material, near: &str) -> Self {
+        let other = |key: &str| material.unknown_param.get(key);
+        let number = |key: &str| other(key)?.parse().ok();
+        let map = |text: Option<&String>| Map::parse(text?);
+        Self {
+            near: near.to_owned(),
+            diffuse: material.diffuse.map(Vec3::from),
+            specular: material.specular.map(Vec3::from),
+            emissive: material.emissive.map(Vec3::from),
+            exponent: material.shininess,
+            opacity: material.dissolve,
+            transparency: number("Tr"),
+            roughness: number("Pr"),
+            metallic: number("Pm"),
+            illumination: material.illumination_model,
+            color_map: map(material.diffuse_texture.as_ref()),
+            coverage_map: map(material.dissolve_texture.as_ref()),
+            normal_map: map(other("norm")),
+            emissive_map: map(other("map_Ke")),
+            has_bump: material.normal_texture.is_some(),
+            name: material.name,
         }
-        Some(())
     }
 }
 
+/// The line of a statement as `tobj` reads it, empty where it has no meaning here; `None` where it cannot be read.
+fn canonical(keyword: &str, rest: &str) -> Option<String> {
+    let map = |text: &str| Map::parse(text).map(|_| text.to_owned());
+    let (spelled, value) = match keyword {
+        "newmtl" => ("newmtl", Some(rest.to_owned()).filter(|name| !name.is_empty())),
+        "kd" => ("Kd", color(rest)),
+        "ks" => ("Ks", color(rest)),
+        "ke" => ("Ke", color(rest)),
+        "ka" => ("Ka", color(rest)),
+        "ns" => ("Ns", scalar(rest)),
+        "d" => ("d", scalar(rest)),
+        "tr" => ("Tr", scalar(rest)),
+        "pr" => ("Pr", scalar(rest)),
+        "pm" => ("Pm", scalar(rest)),
+        "illum" => ("illum", words(rest).next()?.parse().ok().map(|model: u8| model.to_string())),
+        "map_kd" => ("map_Kd", map(rest)),
+        "map_d" => ("map_d", map(rest)),
+        "norm" => ("norm", map(rest)),
+        "map_ke" => ("map_Ke", map(rest)),
+        "bump" | "map_bump" => ("bump", map(rest)),
+        // Comments and everything that has no meaning here.
+        _ => return Some(String::new()),
+    };
+    value.map(|value| format!("{spelled} {value}\n"))
+}
+
 /// Three finite numbers, or one for all three.
-fn color(text: &str) -> Option<Vec3> {
+fn color(text: &str) -> Option<String> {
     let numbers: Vec<f32> = words(text).map_while(number).take(3).map(|x| x as f32).collect();
-    let color = match numbers[..] {
-        [grey] => Vec3::splat(grey),
-        [r, g, b] => Vec3::new(r, g, b),
+    let [r, g, b] = match numbers[..] {
+        [grey] => [grey; 3],
+        [r, g, b] => [r, g, b],
         _ => return None,
     };
-    color.is_finite().then_some(color)
+    [r, g, b].iter().all(|x| x.is_finite()).then(|| format!("{r} {g} {b}"))
 }
 
 /// The first finite number, after options such as `-halo`.
-fn scalar(text: &str) -> Option<f32> {
-    words(text).find_map(number).map(|x| x as f32).filter(|x| x.is_finite())
+fn scalar(text: &str) -> Option<String> {
+    words(text).find_map(number).map(|x| x as f32).filter(|x| x.is_finite()).map(|x| x.to_string())
 }
 
 /// Reads the libraries that `mtllib` statements of `file` name; what is missing becomes a warning.
@@ -192,4 +226,32 @@ fn names(statement: &str) -> Vec<String> {
 
 fn unquoted(name: &str) -> &str {
     name.trim_matches('"')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ODD: &str = "Kd 1 1 1\nd\nnewmtl\nNs 7\nnewmtl a b #1\nkd 0,5 # grey\nKs 1 2\nKe 1.#IND 0 0\nTR -halo 0.25\n\
+        illum 300\nillum 2 x\nmap_kd -s 2 2\nMAP_KD -s 2 my tex.png\nPr 0.1\nd 1e39\nd 0.1\nmap_Bump b.png\n#Kd 1\n";
+
+    #[test]
+    fn odd_statements_are_mended_or_told() {
+        let (mut library, mut report) = (Library::default(), Report::default());
+        library.add(ODD, "odd.mtl", "looks/", &mut report);
+        let [a] = &library.materials[..] else { panic!("one has a name: {library:?}") };
+        assert_eq!((a.name.as_str(), a.near.as_str()), ("a b #1", "looks/"));
+        assert_eq!((a.diffuse, a.specular, a.emissive), (Some(Vec3::splat(0.5)), None, None));
+        assert_eq!((a.opacity, a.transparency, a.roughness), (Some(0.1), Some(0.25), Some(0.1)));
+        assert_eq!((a.illumination, a.exponent, a.has_bump), (Some(2), None, true));
+        assert_eq!(a.color_map, Map::parse("-s 2 my tex.png"));
+        let line = |w: &Warning| w.object.split([' ', ':']).nth(3).and_then(|line| line.parse().ok()).unwrap_or(0);
+        assert_eq!(report.warnings.iter().map(line).collect::<Vec<_>>(), [2, 3, 7, 8, 10, 12, 15]);
+    }
+
+    #[test]
+    fn odd_statements_as_they_stand_can_fail() {
+        let read = |text: &'static str| std::panic::catch_unwind(|| tobj::load_mtl_buf(&mut text.as_bytes()).is_ok());
+        assert!(matches!(read(ODD), Ok(false)) && read("Ks 1 2\n").is_err());
+    }
 }
