@@ -70,7 +70,9 @@ impl<'a> Ears<'a> {
         }
         self.ears.remove(&corner);
         let [a, b, c] = [before, corner, after].map(|k| self.points[k]);
-        if area(a, b, c) <= 0.0 {
+        // Not a number beside a corner that is not finite, which is no ear.
+        let is_convex = area(a, b, c) > 0.0;
+        if !is_convex {
             return;
         }
         match self.places.inside(self.points, [before, corner, after]) {
