@@ -123,8 +123,9 @@ mod tests {
         let smooth = smoothed(&last, &next);
         let rest = values(&smooth.rest);
         let settled = tail(&smooth.rest, &field(swap(rest).map(|x| x as f32))).expect("settled");
-        let found =
-            [0, 1].map(|i| values(&smooth.sum)[i] + rest[i] + values(&settled.sum)[i] + values(&settled.rest)[i]);
+        let (sums, more) = ([&smooth.sum, &settled.sum].map(values), values(&settled.rest));
+        let after = (0..5000).fold(([0.0; 3], more), |(sum, x), _| ([0, 1, 2].map(|i| sum[i] + x[i]), swap(x))).0;
+        let found = [0, 1].map(|i| sums[0][i] + rest[i] + sums[1][i] + after[i]);
         // (I - A)^-1 A (1, 0.2), by hand.
         let exact = [0.99 * (0.2 + 0.99), 0.99 * (1.0 + 0.99 * 0.2)].map(|x| x / (1.0 - 0.99 * 0.99));
         (0..2).for_each(|i| assert!((found[i] / exact[i] - 1.0).abs() < 1e-3, "{found:?}, not {exact:?}"));
