@@ -353,50 +353,6 @@ fn what_is_not_finite_is_replaced_by_choice() {
     assert_eq!(load("inf.exr", &file.bytes(), &clamp).expect("by choice").0.image.pixels[1], [65_504.0; 3]);
 }
 
-/// A Radiance picture of two equal pixels (1/4, 1/2, 1) with these header lines.
-fn radiance(header: &str) -> Result<([f32; 3], Vec<String>), String> {
-    let bytes =
-        [format!("#?RADIANCE\n{header}\n\n-Y 1 +X 2\n").as_bytes(), &[32, 64, 128, 129, 32, 64, 128, 129]].concat();
-    let loaded = load("header.hdr", &bytes, &LoadOptions::strict()).map_err(|error| error.to_string())?;
-    Ok((loaded.0.image.pixels[1], loaded.1))
-}
-
-#[test]
-fn only_header_lines_at_the_margin_count() {
-    let plain = [0.25, 0.5, 1.0];
-    for (header, times) in [
-        ("FORMAT=32-bit_rle_rgbe", 1.0),
-        ("\tEXPOSURE=4\n  FORMAT=32-bit_rle_xyze\npcomb a b", 1.0),
-        ("EXPOSURE=2.0\n\tEXPOSURE=4", 0.5),
-        ("EXPOSURE=2.0\nEXPOSURE= 4", 0.125),
-        ("EXPOSURE=0.5\r\n EXPOSURE=no number\r", 2.0),
-        ("COLORCORR=2 2 2\n\tCOLORCORR=3 3 3", 0.5),
-        ("PRIMARIES=0.640 0.330 0.300 0.600 0.150 0.060 0.3127 0.3290", 1.0),
-    ] {
-        let (found, _) = radiance(header).unwrap_or_else(|error| panic!("{header}: {error}"));
-        assert!(close(found, plain.map(|v| v * times), 1e-6), "{header:?}: {found:?}");
-    }
-    assert!(radiance("EXPOSURE=no number").is_err());
-}
-
-#[test]
-fn primaries_of_radiance_are_converted() {
-    // P3 with the white D65: printed matrix of DCI-P3 D65 to sRGB, rows; there is no adaptation.
-    let p3 = [[1.2249, -0.2247, 0.0], [-0.0420, 1.0419, 0.0], [-0.0197, -0.0786, 1.0979]];
-    let (found, warnings) =
-        radiance("PRIMARIES= 0.680 0.320 0.265 0.690 0.150 0.060 0.3127 0.3290").expect("a picture");
-    let expected = p3.map(|row: [f64; 3]| row[0] * 0.25 + row[1] * 0.5 + row[2] * 1.0);
-    assert!(close(found, expected, 5e-4), "{found:?} is not {expected:?}");
-    assert!(warnings[0].contains("converted to Rec. 709"), "{warnings:?}");
-    // X, Y and Z of the light itself.
-    let (found, _) = radiance("FORMAT=32-bit_rle_xyze").expect("a picture");
-    let inverse = [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]];
-    let expected = inverse.map(|row: [f64; 3]| (row[0] * 0.25 + row[1] * 0.5 + row[2] * 1.0).max(0.0));
-    assert!(close(found, expected, 1e-3), "{found:?} is not {expected:?}");
-    let (found, warnings) = radiance("PRIMARIES=0.64 0.33").expect("a picture");
-    assert!(found == [0.25, 0.5, 1.0] && warnings[0].contains("not eight numbers"), "{warnings:?}");
-}
-
 #[test]
 fn no_changed_byte_of_a_subsampled_file_does_worse_than_an_error() {
     let value = |x: i32, y: i32| 1.0 + 0.01 * (x * y) as f32;

@@ -1,8 +1,10 @@
 //! Plots of accuracy against price, as SVG text and as pixels.
 
+mod axis;
 pub mod chart;
 pub(crate) mod font;
 pub mod pixels;
+mod words;
 
 /// Why a plot or a picture could not be made.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -6,10 +6,14 @@ use exr::meta::attribute::{ChannelDescription, ChannelList, IntegerBounds, Sampl
 use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
 use probe_io::{Environment, Error, LoadOptions};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Loads bytes as a file.
 pub(crate) fn load(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<(Environment, Vec<String>), Error> {
-    let path = std::env::temp_dir().join(format!("relume-probe-{}-{name}", std::process::id()));
+    // Tests of a file run at the same time: each call has a file of its own.
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let path = std::env::temp_dir().join(format!("relume-probe-{}-{number}-{name}", std::process::id()));
     std::fs::write(&path, bytes).expect("a written file");
     let loaded = Environment::load(&path, options);
     std::fs::remove_file(&path).expect("a removed file");

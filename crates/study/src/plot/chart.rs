@@ -1,5 +1,8 @@
 //! A plot of points over two logarithmic axes, with a front and a chosen point.
 
+pub use super::axis::Unit;
+use super::axis::{digits, ticks};
+use super::words::{LETTER, is_free, is_inside, places};
 use super::{Error, font, pixels::Pixels};
 use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::Shift;
@@ -13,13 +16,11 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, TextStyle};
 
 /// Columns and rows of a plot, its legend with it.
-const SIZE: (u32, u32) = (880, 440);
+pub(super) const SIZE: (u32, u32) = (880, 440);
 /// Columns of the legend, which stands beside the plot.
-const LEGEND: u32 = 212;
+pub(super) const LEGEND: u32 = 212;
 /// Rows between two lines of the legend.
 const LEGEND_STEP: i32 = 24;
-/// Most ticks of an axis: of more, only whole powers of ten stay.
-const MOST_TICKS: usize = 10;
 /// Colours that turn in the dark; nothing else is drawn in them.
 const INK: RGBColor = RGBColor(0x1b, 0x24, 0x30);
 const FAINT: RGBColor = RGBColor(0xdd, 0xe2, 0xe8);
@@ -39,19 +40,6 @@ const COLOURS: [RGBColor; 6] = [
 const DARK: &str = "<style>@media (prefers-color-scheme: dark) {\
     [fill=\"#1B2430\"] { fill: #e4e9f0 } [stroke=\"#1B2430\"] { stroke: #e4e9f0 } \
     [stroke=\"#DDE2E8\"] { stroke: #2b3440 } [stroke=\"#5A6778\"] { stroke: #93a1b3 } }</style>";
-/// Letters of labels, in pixels: size, and the mean width of one.
-const LETTER: (i32, i32) = (15, 7);
-
-/// What an axis counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
-    /// Seconds.
-    Seconds,
-    /// Bytes.
-    Bytes,
-    /// A share of one.
-    Share,
-}
 
 /// Points of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -287,44 +275,6 @@ impl Chart {
     }
 }
 
-/// Frames of words beside a point, the best first: left, right, top, bottom.
-fn places((x, y): (i32, i32), width: i32) -> Vec<[i32; 4]> {
-    let high = LETTER.0 / 2 + 1;
-    let mut frames = Vec::new();
-    for away in [15, 28] {
-        for up in [-away, away] {
-            for left in [x + 8, x - 8 - width, x - width / 2] {
-                frames.push([left, left + width, y + up - high, y + up + high]);
-            }
-        }
-    }
-    frames.push([x + 14, x + 14 + width, y - high, y + high]);
-    frames.push([x - 14 - width, x - 14, y - high, y + high]);
-    frames
-}
-
-/// Whether a frame lies within the plot.
-fn is_inside([left, right, top, bottom]: [i32; 4]) -> bool {
-    left > 80 && right < (SIZE.0 - LEGEND) as i32 - 6 && top > 8 && bottom < SIZE.1 as i32 - 60
-}
-
-/// Whether a frame keeps clear of others.
-fn is_free(frame: [i32; 4], taken: &[[i32; 4]]) -> bool {
-    let apart = |b: &[i32; 4]| frame[1] < b[0] || b[1] < frame[0] || frame[3] < b[2] || b[3] < frame[2];
-    taken.iter().all(apart)
-}
-
-/// 1, 2 and 5 times the powers of ten within a range above 0.
-fn ticks([low, high]: [f64; 2]) -> Vec<f64> {
-    let powers = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
-    let of = |factors: &[f64]| -> Vec<f64> {
-        let all = powers.clone().flat_map(|power| factors.iter().map(move |factor| factor * 10f64.powi(power)));
-        all.filter(|tick| (low..=high).contains(tick)).collect()
-    };
-    let fine = of(&[1.0, 2.0, 5.0]);
-    if fine.len() <= MOST_TICKS { fine } else { of(&[1.0]) }
-}
-
 fn square((x, y): (i32, i32), style: ShapeStyle) -> Rectangle<(i32, i32)> {
     Rectangle::new([(x - 4, y - 4), (x + 5, y + 5)], style)
 }
@@ -339,48 +289,6 @@ fn words(side: HPos) -> TextStyle<'static> {
 
 fn fault(reason: String) -> Error {
     Error { what: "a plot", reason }
-}
-
-impl Unit {
-    /// The one unit of an axis of that range, and how it is called.
-    fn of_axis(self, [low, high]: [f64; 2]) -> (f64, &'static str) {
-        match self {
-            Self::Seconds if high < 1.0 => (1e-3, "ms"),
-            Self::Seconds if low > 120.0 => (60.0, "min"),
-            Self::Seconds => (1.0, "s"),
-            Self::Share => (0.01, "%"),
-            Self::Bytes => {
-                let middle = (low * high).sqrt();
-                let power = ((middle.max(1.0).log2() / 10.0) as usize).min(4);
-                (1024f64.powi(power as i32), ["B", "KiB", "MiB", "GiB", "TiB"][power])
-            }
-        }
-    }
-
-    /// A value as people write it.
-    #[must_use]
-    pub fn write(self, value: f64) -> String {
-        match self {
-            Self::Seconds if value > 0.0 && value < 1.0 => format!("{} ms", digits(1e3 * value)),
-            Self::Seconds => format!("{} s", digits(value)),
-            Self::Share => format!("{} %", digits(100.0 * value)),
-            Self::Bytes => {
-                let units = ["B", "KiB", "MiB", "GiB", "TiB"];
-                let power = if value >= 1.0 { ((value.log2() / 10.0) as usize).min(units.len() - 1) } else { 0 };
-                format!("{} {}", digits(value / 1024f64.powi(power as i32)), units[power])
-            }
-        }
-    }
-}
-
-/// A number with three digits that count, without zeros at its end.
-fn digits(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let places = (2 - value.abs().log10().floor() as i32).max(0) as usize;
-    let text = format!("{value:.places$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 #[cfg(test)]
@@ -429,40 +337,8 @@ mod tests {
     }
 
     #[test]
-    fn axes_have_one_unit_and_ticks_of_1_2_5() {
-        assert_eq!(ticks([0.4, 12.0]), [0.5, 1.0, 2.0, 5.0, 10.0]);
-        assert_eq!(ticks([1e-3, 1e3]), [1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0, 1000.0]);
-        assert_eq!(Unit::Seconds.of_axis([0.01, 0.5]), (1e-3, "ms"));
-        assert_eq!(Unit::Seconds.of_axis([0.5, 500.0]), (1.0, "s"));
-        assert_eq!(Unit::Bytes.of_axis([1e5, 1e6]), (1024.0, "KiB"));
+    fn axes_are_named_with_their_unit() {
         let svg = chart().svg().unwrap();
         assert!(svg.contains("time of the bake (s)") && svg.contains("error (%)"), "{svg}");
-    }
-
-    /// No word of the plot lies on a point or on another word, and the legend keeps out of the plot.
-    #[test]
-    fn words_keep_clear_of_points() {
-        let taken = [[100, 112, 100, 112], [100, 112, 130, 142]];
-        let free =
-            places((106, 106), 70).into_iter().find(|frame| is_inside(*frame) && is_free(*frame, &taken)).unwrap();
-        assert!(is_free(free, &taken));
-        assert!(!is_free([90, 160, 98, 114], &taken), "can fail: words upon the point");
-        assert!(!is_inside([600, 700, 100, 116]), "can fail: words upon the legend");
-    }
-
-    #[test]
-    fn numbers_are_written_for_people() {
-        let cases = [
-            (Unit::Seconds, 0.0123, "12.3 ms"),
-            (Unit::Seconds, 75.04, "75 s"),
-            (Unit::Share, 0.0105, "1.05 %"),
-            (Unit::Share, 0.0, "0 %"),
-            (Unit::Bytes, 1536.0, "1.5 KiB"),
-            (Unit::Bytes, 0.0, "0 B"),
-            (Unit::Bytes, 96.0 * 1048576.0, "96 MiB"),
-        ];
-        for (unit, value, text) in cases {
-            assert_eq!(unit.write(value), text);
-        }
     }
 }
