@@ -7,7 +7,9 @@ use crate::hit::NearPoint;
 use crate::receivers::{NONE, Receivers};
 use crate::world::World;
 
-/// Triangles that the surfaces of a scene would be divided into, were all alike.
+/// Triangles are divided whose edges are longer than if so many lay evenly on the surfaces of the scene: finer meshes carry bounces.
+const COARSE_TRIANGLES: f64 = 2000.0;
+/// Their cells have the size that so many triangles would have.
 const EVEN_TRIANGLES: f64 = 16_000.0;
 /// Most cells along an edge.
 const MOST_SIDES: u32 = 64;
@@ -38,11 +40,12 @@ impl Cells {
             0.5 * f64::from((b - a).cross(c - a).length())
         };
         let total: f64 = (0..triangles).map(area).sum();
-        let longest = (2.0 * (4.0 * total / EVEN_TRIANGLES).sqrt()) as f32;
+        let [coarse, longest] =
+            [COARSE_TRIANGLES, EVEN_TRIANGLES].map(|count| (2.0 * (4.0 * total / count).sqrt()) as f32);
         let mut cells = Self::default();
         for triangle in 0..triangles {
             let extent = world.extent(triangle);
-            if extent > longest {
+            if extent > coarse {
                 let sides = ((extent / longest).ceil() as u32).min(MOST_SIDES);
                 cells.index.resize(triangles as usize, NONE);
                 cells.index[triangle as usize] = cells.divided.len() as u32;
