@@ -179,7 +179,7 @@ impl<'a> World<'a> {
     }
 
     /// Share of the light at a hit that the surface sends on to all sides, linear: its albedo; where it shines less what its mirror takes, and
-    /// more by what the mirror of a dielectric returns on its mean where that is not sent by direction.
+    /// more by what the mirror of a dielectric returns on its mean where that is not sent by direction; never more than all.
     pub(crate) fn sent(&self, hit: &Hit) -> Vec3 {
         let (mesh, local) = self.locate(hit.triangle);
         let albedo = self.scene.albedo(mesh, local, hit.u, hit.v);
@@ -195,7 +195,8 @@ impl<'a> World<'a> {
         }
         let [metallic, roughness] = self.scene.shine(mesh, local, hit.u, hit.v);
         let [scale, bias] = mean_environment_brdf(roughness);
-        body + (1.0 - metallic) * (DIELECTRIC * scale + bias)
+        // glTF's mix returns up to 2 % more than it takes; over many bounces that would grow without end.
+        (body + (1.0 - metallic) * (DIELECTRIC * scale + bias)).min(Vec3::ONE)
     }
 
     /// Longest edge of a traced triangle, metres.

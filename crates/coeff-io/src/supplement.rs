@@ -14,6 +14,7 @@ pub struct Supplement {
     /// [`crate::Achieved::interpolation`].
     pub interpolation: Option<[f32; 3]>,
     /// [`crate::Achieved::remainder`].
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub remainder: Option<f32>,
     /// [`crate::Achieved::worst_between`].
     #[serde(skip_serializing_if = "Option::is_none")]

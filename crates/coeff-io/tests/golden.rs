@@ -36,6 +36,8 @@ fn sample_of_version_4() -> Prt {
     let mut prt = sample::sample();
     prt.origin = [0.0; 3];
     prt.achieved.interpolation = None;
+    prt.achieved.remainder = None;
+    prt.achieved.worst_between = None;
     prt.materials.iter_mut().for_each(|material| material.unlit = false);
     prt
 }

@@ -64,6 +64,9 @@ fn absent_parts_take_no_chunk() {
     (prt.maps, prt.volume) = (None, None);
     (prt.gloss, prt.transfer_textures, prt.codebooks) = (None, None, Codebooks::default());
     prt.materials[0] = prt.materials[1].clone();
+    prt.origin = [0.0; 3];
+    prt.materials.iter_mut().for_each(|material| material.unlit = false);
+    (prt.achieved.interpolation, prt.achieved.remainder, prt.achieved.worst_between) = (None, None, None);
     prt.plan.channels = 1;
     let values = prt.transfer.values.iter().step_by(3).copied().collect();
     prt.transfer = Transfer { channels: 1, values, openness: Vec::new(), ..prt.transfer };

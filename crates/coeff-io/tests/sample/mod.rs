@@ -48,7 +48,7 @@ pub(crate) fn sample() -> Prt {
             }),
             interpolation: Some([0.001, 0.1, 0.75]),
             remainder: Some(0.002),
-            worst_between: None,
+            worst_between: Some(3),
         },
         meshes: vec![mesh("floor", 0, [0, 4], [0, 2]), mesh("wall é", 1, [4, 3], [2, 1])],
         materials: vec![material("stone"), plain_material("glass")],
