@@ -91,7 +91,7 @@ pub(crate) fn check_folder(folder: &Path, inputs: &[PathBuf]) -> Result<()> {
 
 fn check_is_folder(folder: &Path) -> Result<()> {
     if folder.is_file() {
-        return Err(Usage(format!("{} is a file: name a folder to write into", folder.display())).into());
+        bail!("{} is a file: name a folder to write into", folder.display());
     }
     Ok(())
 }

@@ -21,6 +21,11 @@ const MOST_UNASKED: u32 = 4096;
 pub(crate) const MOST_TEXELS: u32 = 8192;
 /// Meshes that a notice names.
 const NAMED: usize = 3;
+/// Numbers of texels that are tried before one is named.
+const TRIES: usize = 8;
+
+/// Makes the sheets of a scene.
+type Make = fn(&SheetChoice, &mut Scene, &Console) -> Result<Vec<SheetSettings>>;
 
 /// How fine sheets are, and whose coordinates they have.
 #[derive(Debug, Clone)]
@@ -47,6 +52,37 @@ impl SheetChoice {
     /// The sheets for a scene: by coordinates of its own where they serve; elsewhere its charts are packed anew, and what has none is
     /// unwrapped. What has normal maps is marked as directional.
     pub(crate) fn sheets(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
+        self.or_name_texels(scene, console, Self::of_scene)
+    }
+
+    /// A sheet for each mesh, by its share of the area: by its own coordinates where they serve, else it is unwrapped alone.
+    pub(crate) fn per_object(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
+        self.or_name_texels(scene, console, Self::of_objects)
+    }
+
+    /// What `make` makes; where the texels asked for are too few, the error names a number that was tried and does.
+    fn or_name_texels(&self, scene: &mut Scene, console: &Console, make: Make) -> Result<Vec<SheetSettings>> {
+        if !self.asked {
+            return make(self, scene, console).map_err(explained);
+        }
+        let before = scene.clone();
+        let mut error = match make(self, scene, console) {
+            Err(error) => error,
+            sheets => return sheets,
+        };
+        // The sheets of a scene need different numbers: the first that fails names its own alone.
+        for _ in 0..TRIES {
+            let Some(&UnwrapError::TooCoarse { needed, .. }) = error.downcast_ref() else { break };
+            let larger = Self { texels: needed, ..self.clone() };
+            match make(&larger, &mut before.clone(), &Console::new(true, false, console.began())) {
+                Err(next) => error = next,
+                Ok(_) => break,
+            }
+        }
+        Err(explained(error))
+    }
+
+    fn of_scene(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
         self.check_names(scene)?;
         let meshes = self.meshes(scene);
         let found = match self.unwrap {
@@ -60,8 +96,7 @@ impl SheetChoice {
         Ok(sheets)
     }
 
-    /// A sheet for each mesh, by its share of the area: by its own coordinates where they serve, else it is unwrapped alone.
-    pub(crate) fn per_object(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
+    fn of_objects(&self, scene: &mut Scene, console: &Console) -> Result<Vec<SheetSettings>> {
         self.check_names(scene)?;
         let meshes = self.meshes(scene);
         let progress = console.progress();
@@ -74,7 +109,7 @@ impl SheetChoice {
             other => other,
         };
         drop(progress);
-        let found = found.map_err(explained)?;
+        let found = found?;
         Ok(found.into_iter().map(|object| sheet(scene, vec![object.mesh], [object.width, object.height])).collect())
     }
 
@@ -132,7 +167,7 @@ impl SheetChoice {
     ) -> Result<Atlas> {
         let progress = console.progress();
         let told = |stage, done, total| progress.set(stage, done, total);
-        let atlas = lightmap::unwrap_resolved(scene, group, kept, options, self.most(), &told).map_err(explained)?;
+        let atlas = lightmap::unwrap_resolved(scene, group, kept, options, self.most(), &told)?;
         drop(progress);
         let (width, height) = (atlas.width, atlas.height);
         if u64::from(width) * u64::from(height) > u64::from(self.texels).pow(2) {
@@ -174,11 +209,13 @@ fn tell(found: &Layouts, scene: &Scene, console: &Console) {
 }
 
 /// With the option that gives more texels.
-fn explained(error: UnwrapError) -> anyhow::Error {
-    match error {
-        UnwrapError::TooCoarse { needed, .. } if needed <= MOST_TEXELS => anyhow!("{error}: use --texels {needed}"),
-        UnwrapError::TooCoarse { .. } => anyhow!("{error}: name the meshes that get light maps with --mapped"),
-        other => other.into(),
+fn explained(error: anyhow::Error) -> anyhow::Error {
+    match error.downcast_ref() {
+        Some(UnwrapError::TooCoarse { needed, .. }) if *needed <= MOST_TEXELS => {
+            anyhow!("{error}: use --texels {needed}")
+        }
+        Some(UnwrapError::TooCoarse { .. }) => anyhow!("{error}: name the meshes that get light maps with --mapped"),
+        _ => error,
     }
 }
 

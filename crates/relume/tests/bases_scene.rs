@@ -111,7 +111,7 @@ fn the_files_of_a_scene_are_written() {
     let csv = fs::read_to_string(folder.join("bases-scene.csv")).unwrap();
     assert_eq!(csv.lines().count(), 57, "14 bases in 4 encodings: {csv}");
     assert!(fs::read_to_string(folder.join("bases-scene.svg")).unwrap().contains("recommended"));
-    assert_eq!(image::open(folder.join("bases-scene.png")).unwrap().to_rgb8().dimensions(), (680, 440));
+    assert_eq!(image::open(folder.join("bases-scene.png")).unwrap().to_rgb8().dimensions(), (880, 440));
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "nothing else is left there");
 }
 
@@ -125,7 +125,7 @@ fn what_cannot_be_on_a_scene_is_refused() {
         (&plane[..], "--probe"),
         (&["--probe", "builtin:sky"], "--scene"),
         (&["--texels", "64"], "--scene"),
-        (&[&lit[..], &["--target", "0.1", "--budget", "1M"]].concat(), "--budget"),
+        (&[&lit[..], &["--target", "0.1", "--budget", "1M"]].concat(), "--target-size"),
         (&[&lit[..], &["--target", "0"]].concat(), "above 0"),
         (&[&lit[..], &["--budget", "0"]].concat(), "0 bytes"),
         (&[&lit[..], &["--signals", "10"]].concat(), "--signals"),

@@ -113,6 +113,10 @@ fn malformed_collection_ends_in_clear_errors() {
             continue;
         }
         let name = path.to_str().unwrap().to_owned();
+        // A whole scene, which is read since Draco is: it takes its time.
+        if name.ends_with("awkward-sponza_draco_required.glb") {
+            continue;
+        }
         let arguments = match path.extension().and_then(|e| e.to_str()) {
             Some("gltf" | "glb" | "obj") => vec!["plan", &name],
             Some("hdr" | "exr") => vec!["light", &name, "--bands", "3", "-o", "out.npy"],

@@ -21,7 +21,7 @@ const STAGES: [(&[&str], &str); 4] = [
     (&["bake", "builtin:atrium", "-o", "a.prt", "--rays", "65536", "--bands", "8", "--refine", "off"], "visibility"),
     (&["bake", "builtin:atrium", "-o", "a.prt", "--refine", "0.05", "--rays", "4096"], "preparation"),
     (&["reference", "builtin:atrium", "--probe", "builtin:sky", "-o", "a.exr", "--spp", "512"], "rows"),
-    (&["cost", "builtin:atrium", "--probe", "builtin:sky", "-o", ".", "--budget", "600"], "refinement"),
+    (&["cost", "builtin:atrium", "--probe", "builtin:sky", "-o", ".", "--budget", "600"], "visibility"),
 ];
 
 #[test]
@@ -73,7 +73,7 @@ fn a_time_that_is_up_keeps_the_last_result() {
         let arguments = ["bake", "builtin:atrium", "-o", "a.prt", "--bands", "4", "--time", time];
         let (code, text) = Running::start(command(folder.path(), &arguments)).end();
         assert_eq!(code, Some(0), "{text}");
-        assert!(text.contains("after ") && text.ends_with("wrote a.prt"), "{text}");
+        assert!(text.contains("after ") && text.contains("wrote a.prt"), "{text}");
         assert!(!text.contains("asked for"), "nobody asked for an error: {text}");
         assert_eq!(files(folder.path()), ["a.prt"]);
         coeff_io::Prt::read(&folder.path().join("a.prt")).expect("a whole file");
