@@ -41,8 +41,10 @@ impl Extent {
             return DVec3::ZERO;
         }
         let grid = libm::exp2(libm::floor(libm::log2(size)));
-        // Adding zero makes -0 zero.
-        (0.5 * (self.min + self.max) / grid).round() * grid + 0.0
+        let middle = 0.5 * (self.min + self.max);
+        // An axis along which the scene is near zero stays as it is; adding zero makes -0 zero.
+        let moved = DVec3::select(middle.abs().cmpgt(DVec3::splat(size)), middle, DVec3::ZERO);
+        (moved / grid).round() * grid + 0.0
     }
 }
 
