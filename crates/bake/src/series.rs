@@ -12,8 +12,9 @@ pub(crate) const FIRST: u32 = 24;
 pub(crate) const EXPECTED: u32 = FIRST + 12;
 /// Most bounces where their number is left open; what is missing after them is told.
 pub(crate) const MOST: u32 = 2048;
-/// Part of a bounce that may differ from the one before times the ratio where a tail is summed.
-const SETTLED: f64 = 0.1;
+/// Part of a bounce that may differ from the one before times the ratio where a tail is summed. The sum stays exact whatever it is; too
+/// small a part waits for ever where light goes to and fro, too large a one leaves much behind.
+const SETTLED: f64 = 0.5;
 
 /// A tail that was summed.
 pub(crate) struct Tail {
@@ -65,9 +66,29 @@ pub(crate) fn remainder(change: f64, ratio: f64) -> f64 {
     if ratio < 1.0 { change * ratio / (1.0 - ratio) } else { f64::INFINITY }
 }
 
+/// What follows the last of three changes where each is to the one before the one before it as the last to the first: also where light goes
+/// to and fro between two surfaces, so that every other change is small. Where changes fade evenly it is [`remainder`].
+pub(crate) fn remainder_of_pairs([first, second, last]: [f64; 3]) -> f64 {
+    match last / first {
+        ratio if ratio < 1.0 => (second + last) * ratio / (1.0 - ratio),
+        _ if last == 0.0 => 0.0,
+        _ => f64::INFINITY,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// 0.9, 0.1, 0.45, 0.05, ...: each pair is half of the one before.
+    #[test]
+    fn what_alternates_leaves_its_pairs() {
+        assert!((remainder_of_pairs([0.1, 0.45, 0.05]) - 0.5).abs() < 1e-12);
+        assert!(remainder(0.05, 0.05 / 0.45) < 0.01, "can fail: one ratio misses it");
+        let even = [0.4, 0.2, 0.1];
+        assert!((remainder_of_pairs(even) - remainder(0.1, 0.5)).abs() < 1e-12);
+        assert_eq!((remainder_of_pairs([0.0; 3]), remainder_of_pairs([0.1, 0.1, 0.1])), (0.0, f64::INFINITY));
+    }
 
     /// Rows of one number each.
     fn field(values: [f32; 3]) -> Field {

@@ -21,7 +21,7 @@ impl Run<'_> {
             // What comes after these cannot matter; they end sooner where measured to.
             Bounces::Auto => self.plan.bounces.min(series::MOST),
         };
-        let (mut before, mut slowest) = (1.0f64, 0.0f64);
+        let (mut earlier, mut before, mut slowest) = (0.0f64, 1.0f64, 0.0f64);
         for n in 1..=limit {
             let mut next = bounce_pass(&self.gatherer, &self.receivers, chunks, &self.last, n, &self.monitor)?;
             if let Some(mut glints) = self.glints.take_if(|_| n == 1) {
@@ -57,14 +57,17 @@ impl Run<'_> {
                 before if before > 0.0 => change / before,
                 _ => 0.0,
             };
-            let left = series::remainder(change, ratio.max(slowest));
+            let mut left = series::remainder(change, ratio.max(slowest));
+            if n > 2 && slowest == 0.0 {
+                left = left.max(series::remainder_of_pairs([earlier, before, change]));
+            }
             if slowest > 0.0 || auto && n == series::MOST {
                 self.achieved.remainder = Some(left.min(f64::from(f32::MAX)) as f32);
             }
             if auto && !summed && left <= f64::from(tolerance(self.settings.quality)) {
                 break;
             }
-            before = change;
+            (earlier, before) = (before, change);
         }
         Ok(())
     }
