@@ -149,17 +149,7 @@ impl<'a> Bends<'a> {
         two_sided: bool,
         (total, monitor): (u64, &Monitor<'_>),
     ) -> Result<Vec<Look>, Error> {
-        let gatherer = Gatherer {
-            world: self.world,
-            bank: &self.bank,
-            bands: self.bands,
-            quality: Quality::Rays(RAYS),
-            visibility: true,
-            hits: false,
-            permanent: 0,
-            worth: 0.0,
-            mirrors: None,
-        };
+        let gatherer = Gatherer::of_direct_light(self.world, &self.bank, self.bands, Quality::Rays(RAYS));
         let one = |worker: &mut Worker, receiver: &Receiver| {
             let mut look = Look::new();
             if monitor.is_cancelled() {

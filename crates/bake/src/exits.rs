@@ -44,17 +44,7 @@ pub(crate) fn cut_at_exits<'a>(
     let bands = Bands::new(BANDS).expect("a constant in range");
     let quality = Quality::Rays(RAYS);
     let bank = DirectionBank::new(bands, &Settings { bands: BANDS, quality, ..settings::standard() });
-    let gatherer = Gatherer {
-        world,
-        bank: &bank,
-        bands,
-        quality,
-        visibility: true,
-        hits: false,
-        permanent: 0,
-        worth: 0.0,
-        mirrors: None,
-    };
+    let gatherer = Gatherer::of_direct_light(world, &bank, bands, quality);
     let mut cuts = Cuts::new();
     for mesh in &scene.meshes {
         add_cuts(mesh, &gatherer, &mut cuts);

@@ -65,6 +65,18 @@ pub(crate) struct Gathered {
     pub(crate) late: Vec<PackedHit>,
 }
 
+impl<'a> Gatherer<'a> {
+    /// For a look at what receivers see of the sky: no blockers are wanted, and none goes into the file.
+    pub(crate) fn of_direct_light(
+        world: &'a World<'a>,
+        bank: &'a DirectionBank,
+        bands: Bands,
+        quality: Quality,
+    ) -> Self {
+        Self { world, bank, bands, quality, visibility: true, hits: false, permanent: 0, worth: 0.0, mirrors: None }
+    }
+}
+
 impl Gatherer<'_> {
     /// Gathers for one receiver: a pure function of the scene, the settings and the receiver's index.
     pub(crate) fn gather(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Gathered {

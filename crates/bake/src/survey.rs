@@ -34,17 +34,7 @@ pub(crate) fn survey(
     };
     let quality = Quality::Rays(rays.max(crate::settings::MIN_STRATIFIED));
     let bank = DirectionBank::new(bands, &Settings { quality, ..settings.clone() });
-    let gatherer = Gatherer {
-        world,
-        bank: &bank,
-        bands,
-        quality,
-        visibility: true,
-        hits: false,
-        permanent: 0,
-        worth: 0.0,
-        mirrors: None,
-    };
+    let gatherer = Gatherer::of_direct_light(world, &bank, bands, quality);
     let ids = picked(traced, (traced.len() / ONE_OF).clamp(1, MOST));
     let seen: Vec<Gathered> =
         ids.par_iter().map_init(Worker::new, |w, &id| gatherer.gather(&list[id as usize], id, w)).collect();
