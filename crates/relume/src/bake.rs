@@ -13,7 +13,7 @@ use anyhow::{Context, Result};
 use bake::Extras;
 use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -209,12 +209,7 @@ fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {
     }
     let file = options.output.display();
     console.notice(&format!("wrote {file}"));
-    console.next(&format!("relume render {file} --probe {} -o {}", options.probe_name(), png(&options.output)));
-}
-
-/// The picture of a baked file.
-fn png(prt: &Path) -> String {
-    prt.with_extension("png").display().to_string()
+    console.next(&source::render_command(&options.output, &options.probe_name()));
 }
 
 /// What light maps took and reached, in words.

@@ -59,8 +59,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     if let Some(text) = crate::interpolation::text(&prt).filter(|_| !options.json) {
         console.print(&format!("error between receivers {text}\n"))?;
     }
-    let picture = path.with_extension("png");
-    console.next(&format!("relume render {} --probe builtin:sky -o {}", path.display(), picture.display()));
+    console.next(&crate::source::render_command(path, "builtin:sky"));
     Ok(())
 }
 

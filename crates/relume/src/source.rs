@@ -305,6 +305,11 @@ pub(crate) fn check_baked(path: &Path) -> Result<()> {
     check_kind(path, Kind::Baked, &[])
 }
 
+/// What is typed to draw a baked file under a light.
+pub(crate) fn render_command(path: &Path, probe: &str) -> String {
+    format!("relume render {} --probe {probe} -o {}", path.display(), path.with_extension("png").display())
+}
+
 /// Reads a baked file.
 pub(crate) fn prt(path: &Path) -> Result<Prt> {
     check_baked(path)?;
