@@ -51,6 +51,8 @@ impl Pictures<'_> {
             self.warn(&source.name, "bump (height) maps are not supported and were ignored; use norm");
         }
         let opacity = self.opacity(source);
+        // A picture of what glows shows as it is where no colour is said, as one of colours does.
+        let glow = if source.emissive_map.is_some() { 1.0 } else { 0.0 };
         Material {
             name: source.name.clone(),
             base_color: diffuse.extend(opacity),
@@ -64,7 +66,7 @@ impl Pictures<'_> {
             base_color_texture: self.slot(source, source.color_map.as_ref(), source.coverage_map.as_ref()),
             normal_texture: self.slot(source, source.normal_map.as_ref(), None),
             normal_scale: source.normal_map.as_ref().map_or(1.0, |map| map.strength),
-            emissive: source.emissive.unwrap_or(Vec3::ZERO).max(Vec3::ZERO),
+            emissive: source.emissive.unwrap_or(Vec3::splat(glow)).max(Vec3::ZERO),
             emissive_texture: self.slot(source, source.emissive_map.as_ref(), None),
             ..Material::default()
         }
