@@ -73,6 +73,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         Settings { time: options.time, ..options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))? };
     output::check(&options.output, &options.inputs())?;
     let mut scene = options.scene.load(console)?;
+    output::check(&options.output, &scene.files)?;
     let probe = options.probe.as_ref().map(|probe| (probe, &options.read));
     let extras = options.extras.of(&mut scene, options.bake.storage, &settings, probe, console)?;
     console.progress().expect(&stages(&settings, &extras));
@@ -103,7 +104,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         }
     };
     report(&prt, began.elapsed(), options, console);
-    crate::enclosure::tell(&scene, &prt.plan, console);
+    crate::enclosure::tell_of_bake(&prt, console);
     Ok(())
 }
 

@@ -78,6 +78,7 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     };
     output::check_all(folder, &FILES, &[scene.files(), probe.files()].concat())?;
     let mut scene = scene.load(console)?;
+    output::check_all(folder, &FILES, &scene.files)?;
     let environment = probe.load(&options.read, console)?;
     let choice = SheetChoice {
         texels: options.texels,

@@ -87,7 +87,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         scene.cameras.insert(0, camera);
     }
     let environment = options.probe.load(console)?;
-    output::check_all(&options.output, &FILES, &[options.scene.files(), options.probe.files()].concat())?;
+    output::check_all(&options.output, &FILES, &[scene.files.clone(), options.probe.files()].concat())?;
     let (mapped, sheet_options) = (options.light_maps(&scene, console)?, options.sheet_choice().options());
     let targets = Targets { error: options.target_error, seconds: options.target_time, bytes: options.target_size };
     let request = Request {

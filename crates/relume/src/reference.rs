@@ -139,6 +139,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let gloss = options.gloss()?;
     output::check(&options.output.path, &[options.scene.files(), options.probe.files()].concat())?;
     let scene = options.scene.load(console)?;
+    output::check(&options.output.path, &scene.files)?;
     let camera = lens::of_scene(options.camera.as_ref(), &scene)?;
     let environment = options.probe.load(console)?;
     let light = match options.light {
@@ -167,6 +168,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     };
     let mut picture = picture.context("the reference was cancelled; no file was written")?;
     let noise = noise(&picture);
+    crate::enclosure::tell_of_picture(&picture.pixels, console);
     options.display.expose(&mut picture.pixels);
     options.output.write(options.size, &picture.pixels, &options.display.display(&picture.pixels))?;
     console.notice(&format!(

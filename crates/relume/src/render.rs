@@ -2,6 +2,7 @@
 
 use crate::console::Console;
 use crate::draw::{Backend, Drawer, Window};
+use crate::enclosure;
 use crate::gloss_look::{self, GlossOptions};
 use crate::lens::{self, Lens};
 use crate::look::{self, LookOptions};
@@ -170,6 +171,7 @@ fn draw_one(options: &Options, frame: &Frame, drawer: &mut Drawer<'_>, console: 
     let image = drawer.draw(frame, console)?;
     console.detail(&format!("drew in {:.1} ms", milliseconds(began.elapsed())));
     options.output.write(options.size, &image.linear, &image.display)?;
+    enclosure::tell_of_picture(&image.linear, console);
     console.notice(&format!("wrote {}", options.output.path.display()));
     options.tell_next(console);
     Ok(())

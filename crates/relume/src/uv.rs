@@ -70,6 +70,7 @@ enum SheetName {
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     options.image.as_ref().map_or(Ok(()), |target| output::check(&target.path, &options.scene.files()))?;
     let mut scene = options.scene.load(console)?;
+    options.image.as_ref().map_or(Ok(()), |target| output::check(&target.path, &scene.files))?;
     let all: Vec<usize> = (0..scene.meshes.len()).collect();
     let atlas = if options.unwrap { Some(unwrap(&mut scene, &all, &options.as_unwrap(), console)?) } else { None };
     let size = atlas.map_or([options.texels; 2], |atlas| [atlas.width, atlas.height]);

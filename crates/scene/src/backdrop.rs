@@ -4,16 +4,21 @@ use glam::{DVec3, Vec3};
 
 use crate::{Bounds, Mesh, Scene, Warning};
 
-/// Share of the sphere, seen from the middle of all else, that a dome fills at least: half a sphere may end at the horizon.
+/// Share of the sphere, seen from the middle of all else, that domes fill at least: half a sphere may end at the horizon.
 const DOME: f64 = 0.4;
+/// Share that each part of a dome fills at least, such as a side of a box of six meshes.
+const PART: f64 = 0.02;
+/// A mesh lower than this share of its width is ground, which may go on beyond a dome.
+const GROUND: f32 = 0.1;
 
-/// Takes out the meshes that enclose all others and show the same radiance whatever the light, with a warning for each.
+/// Takes out the meshes that, alone or together, enclose all others and show the same radiance whatever the light, with a
+/// warning for each.
 pub(crate) fn drop_domes(scene: &mut Scene) {
-    let domes: Vec<bool> = (0..scene.meshes.len()).map(|index| is_dome(scene, index)).collect();
-    let mut dome = domes.iter();
+    let domes = domes(scene);
+    let mut index = 0..;
     let report = &mut scene.report;
     scene.meshes.retain(|mesh| {
-        let is_dome = *dome.next().expect("one for each mesh");
+        let is_dome = index.next().is_some_and(|index| domes.contains(&index));
         if is_dome {
             let message = "encloses the scene and is unlit: a sky dome, which would keep all light out. It was left out; the light probe \
                            is the sky"
@@ -24,29 +29,52 @@ pub(crate) fn drop_domes(scene: &mut Scene) {
     });
 }
 
-fn is_dome(scene: &Scene, index: usize) -> bool {
-    let material = scene.material(index);
-    let glows = material.emissive.max_element() > 0.0 && material.base_color.truncate() == Vec3::ZERO;
-    if !(material.unlit || glows) {
-        return false;
-    }
-    let others = scene.meshes.iter().enumerate().filter(|(other, _)| *other != index);
-    let rest = Bounds::of(others.filter_map(|(_, mesh)| mesh.bounds()).flat_map(|b| [b.min, b.max]));
-    let (Some(rest), Some(own)) = (rest, scene.meshes[index].bounds()) else { return false };
+/// The meshes of the domes.
+fn domes(scene: &Scene) -> Vec<usize> {
+    let (own, lit): (Vec<usize>, Vec<usize>) = (0..scene.meshes.len()).partition(|&index| shows_itself(scene, index));
+    let bounds = |list: &[usize]| {
+        let boxes = list.iter().filter_map(|&index| scene.meshes[index].bounds());
+        Bounds::of(boxes.flat_map(|b| [b.min, b.max]))
+    };
+    let is_ground = |&index: &usize| {
+        let size = scene.meshes[index].bounds().map_or(Vec3::ZERO, |b| b.size());
+        size.y < GROUND * size.x.max(size.z)
+    };
+    let standing: Vec<usize> = lit.iter().copied().filter(|index| !is_ground(index)).collect();
+    let Some(rest) = bounds(if standing.is_empty() { &lit } else { &standing }) else { return Vec::new() };
+    // What is unlit among the other meshes stays.
+    let beyond = |index: &usize| {
+        let own = scene.meshes[*index].bounds();
+        own.is_some_and(|b| b.min.cmplt(rest.min).any() || b.max.cmpgt(rest.max).any())
+    };
+    let share = |index: &usize| share(&scene.meshes[*index], rest.center());
+    let parts: Vec<usize> = own.into_iter().filter(|index| beyond(index) && share(index) > PART).collect();
+    let Some(whole) = bounds(&parts) else { return Vec::new() };
     // A dome may stand on the ground that it covers.
-    let margin = 0.01 * own.size();
-    let holds = (own.min - margin).cmple(rest.min).all() && (own.max + margin).cmpge(rest.max).all();
-    holds && share(&scene.meshes[index], rest.center()) > DOME
+    let margin = 0.01 * whole.size();
+    let holds = (whole.min - margin).cmple(rest.min).all() && (whole.max + margin).cmpge(rest.max).all();
+    if holds && parts.iter().map(share).sum::<f64>() > DOME { parts } else { Vec::new() }
 }
 
-/// Share of the sphere that a mesh fills from a point, whichever side it shows (Van Oosterom and Strackee 1983).
+/// Whether a mesh shows the same radiance whatever the light.
+fn shows_itself(scene: &Scene, index: usize) -> bool {
+    let material = scene.material(index);
+    material.unlit || material.emissive.max_element() > 0.0 && material.base_color.truncate() == Vec3::ZERO
+}
+
+/// Share of the sphere that a mesh fills from a point, whichever side it shows.
 fn share(mesh: &Mesh, from: Vec3) -> f64 {
-    let angle = |triangle: &[u32; 3]| {
-        let [a, b, c] =
-            triangle.map(|v| (mesh.positions[v as usize].as_dvec3() - from.as_dvec3()).normalize_or(DVec3::X));
+    share_of_sphere(mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize])), from)
+}
+
+/// Share of the sphere that triangles of one orientation fill from a point: 1 where they close around it, 0 where it lies
+/// outside of a closed surface (Van Oosterom and Strackee 1983).
+pub fn share_of_sphere(triangles: impl IntoIterator<Item = [Vec3; 3]>, from: Vec3) -> f64 {
+    let angle = |triangle: [Vec3; 3]| {
+        let [a, b, c] = triangle.map(|p| (p.as_dvec3() - from.as_dvec3()).normalize_or(DVec3::X));
         2.0 * libm::atan2(a.dot(b.cross(c)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a))
     };
-    mesh.triangles.iter().map(angle).sum::<f64>().abs() / (4.0 * std::f64::consts::PI)
+    triangles.into_iter().map(angle).sum::<f64>().abs() / (4.0 * std::f64::consts::PI)
 }
 
 #[cfg(test)]
@@ -83,5 +111,10 @@ mod tests {
         beside.meshes[1].positions.iter_mut().for_each(|p| p.x += 30.0);
         drop_domes(&mut beside);
         assert_eq!(beside.meshes.len(), 2);
+        // Nothing else is there that a light could fall on.
+        let mut scan = within(Material { unlit: true, ..Material::default() });
+        scan.materials.iter_mut().for_each(|material| material.unlit = true);
+        drop_domes(&mut scan);
+        assert_eq!(scan.meshes.len(), 2);
     }
 }

@@ -1,5 +1,6 @@
 //! The files that a scene file may refer to: those in its own folder, never the network.
 
+use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -47,27 +48,62 @@ pub(crate) fn folder_of(path: &str) -> &str {
     &path[..path.len() - bare(path).len()]
 }
 
-/// The folder of a scene file.
+/// Where programs that write OBJ mean a file to be that another one in the folder `near` names.
+fn places(near: &str, path: &str) -> [String; 4] {
+    let bare = bare(path);
+    [format!("{near}{path}"), path.to_owned(), format!("{near}{bare}"), bare.to_owned()]
+}
+
+/// The folder of a scene file, and which of its files the scene names.
 #[derive(Debug)]
-pub(crate) struct Folder(PathBuf);
+pub(crate) struct Folder {
+    path: PathBuf,
+    /// Files that were read, or that are named and not read.
+    files: RefCell<Vec<PathBuf>>,
+}
 
 impl Folder {
     /// The folder in which `scene_file` lies.
     pub(crate) fn of(scene_file: &Path) -> Self {
-        Self(scene_file.parent().unwrap_or(Path::new("")).to_owned())
+        let path = scene_file.parent().unwrap_or(Path::new("")).to_owned();
+        Self { path, files: RefCell::default() }
+    }
+
+    /// The files that the scene named so far, as far as they are there.
+    pub(crate) fn into_files(self) -> Vec<PathBuf> {
+        self.files.into_inner()
+    }
+
+    /// Notes a file that the scene names and that is not read, such as a picture of an unsupported kind; looked for as
+    /// [`Folder::find`] does.
+    pub(crate) fn mention(&self, near: &str, path: &str) {
+        for place in places(near, path) {
+            for name in [Some(place.clone()), self.any_case(&place)].into_iter().flatten() {
+                if let Ok(path) = self.resolve(&name) {
+                    self.note(&path);
+                }
+            }
+        }
+    }
+
+    fn note(&self, path: &Path) {
+        let mut files = self.files.borrow_mut();
+        if path.is_file() && !files.iter().any(|file| file == path) {
+            files.push(path.to_owned());
+        }
     }
 
     /// Reads the file at a relative path with `/` or `\` between its parts.
     pub(crate) fn read(&self, relative: &str) -> Result<Vec<u8>, Missing> {
         let path = self.resolve(relative).map_err(Missing::Refused)?;
+        self.note(&path);
         read_file(&path).map_err(|error| Missing::Io(path, error))
     }
 
     /// Looks for a file as programs that write OBJ mean it: at its path, from the folder `near` of the file that names
     /// it or from this folder, else by its bare name in either; last with other capitals. Gives its path and content.
     pub(crate) fn find(&self, near: &str, path: &str) -> Result<(String, Vec<u8>), Missing> {
-        let bare = bare(path);
-        let places = [format!("{near}{path}"), path.to_owned(), format!("{near}{bare}"), bare.to_owned()];
+        let places = places(near, path);
         let mut first = None;
         for place in &places {
             match self.read(place) {
@@ -90,7 +126,9 @@ impl Folder {
         self.resolve(relative).ok()?;
         let mut found = String::new();
         for part in relative.replace('\\', "/").split('/').filter(|part| !matches!(*part, "" | ".")) {
-            let entries = fs::read_dir(self.0.join(&found)).ok()?;
+            // A scene of the working folder lies in one without a name, which cannot be listed.
+            let folder = self.path.join(&found);
+            let entries = fs::read_dir(if folder.as_os_str().is_empty() { Path::new(".") } else { &folder }).ok()?;
             let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
             // The first in order, since folders list theirs in any.
             let name = names.filter(|name| part == ".." || name.eq_ignore_ascii_case(part)).min();
@@ -125,7 +163,7 @@ impl Folder {
                 return Err(format!("{relative:?} leaves the scene's folder; move the file into it"));
             }
         }
-        Ok(self.0.join(unified))
+        Ok(self.path.join(unified))
     }
 }
 

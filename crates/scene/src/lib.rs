@@ -25,6 +25,7 @@ mod vertices;
 mod warnings;
 mod weld;
 
+pub use backdrop::share_of_sphere;
 pub use bounds::{Bounds, default_camera};
 pub use error::Error;
 pub use known::{BUILTINS, PAPER_SCENES, builtin};

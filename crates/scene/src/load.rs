@@ -32,6 +32,7 @@ fn read(path: &Path) -> Result<Scene, Error> {
         }
     };
     scene.name = path.display().to_string();
+    scene.files.insert(0, path.to_owned());
     repair::finish(&mut scene);
     backdrop::drop_domes(&mut scene);
     if scene.meshes.is_empty() {

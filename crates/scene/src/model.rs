@@ -1,5 +1,7 @@
 //! What a scene is, after loading.
 
+use std::path::PathBuf;
+
 use glam::{Affine2, Vec2, Vec3, Vec4};
 
 /// A whole scene in world space, in linear colour and metres.
@@ -24,6 +26,8 @@ pub struct Scene {
     pub moving: Vec<String>,
     /// What was noticed and mended while loading.
     pub report: Report,
+    /// The files that the scene consists of, its own first: buffers, libraries and pictures that it names and that are there.
+    pub files: Vec<PathBuf>,
 }
 
 /// One triangle mesh with one material. Attribute vectors are either empty or as long as `positions`.

@@ -24,6 +24,7 @@ mod view;
 use std::path::Path;
 
 use crate::folder::Folder;
+use crate::uri::{Uri, parse};
 use crate::{Error, Report, Scene, Warning};
 
 use document::Document;
@@ -40,6 +41,12 @@ pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
     let (materials, textures) = material::read(&document, &folder, &mut report)?;
     let primitives = primitive::read_all(&document, materials.len() as u32 - 1, &mut report)?;
     let placed = place::place(&document, &primitives, &mut report)?;
+    // Those that no material reads belong to the scene too.
+    for uri in document.root.images.iter().filter_map(|image| image.uri.as_ref()) {
+        if let Ok(Uri::Relative(name)) = parse(uri) {
+            folder.mention("", &name);
+        }
+    }
     Ok(Scene {
         name: file.display().to_string(),
         origin: placed.origin.to_array(),
@@ -50,6 +57,7 @@ pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
         lights: placed.lights,
         moving: placed.moving,
         report,
+        files: folder.into_files(),
     })
 }
 

@@ -21,7 +21,12 @@ pub(super) struct Library {
     /// By name as it stands, and without what follows a `#`.
     exact: HashMap<String, usize>,
     cut: HashMap<String, usize>,
+    /// Folder of the library and name of every picture, read or not.
+    pictures: Vec<(String, String)>,
 }
+
+/// Keywords of pictures that do not begin with `map_`.
+const MAPS: [&str; 6] = ["bump", "norm", "disp", "decal", "refl", "displacement"];
 
 /// The statements of one material.
 #[derive(Debug, Default, Clone)]
@@ -62,6 +67,10 @@ impl Library {
             let (word, rest) = keyword(&statement);
             let lower = word.to_ascii_lowercase();
             let read = canonical(&lower, rest);
+            if let Some(map) = Map::parse(rest).filter(|_| lower.starts_with("map_") || MAPS.contains(&lower.as_str()))
+            {
+                self.pictures.push((near.to_owned(), map.file));
+            }
             if lower == "newmtl" {
                 named = read.is_some();
             }
@@ -174,6 +183,7 @@ pub(super) fn read(folder: &Folder, file: &Path, stated: &[String], report: &mut
             }
         }
     }
+    library.pictures.iter().for_each(|(near, picture)| folder.mention(near, picture));
     library
 }
 

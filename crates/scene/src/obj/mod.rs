@@ -49,7 +49,8 @@ pub(crate) fn load(file: &Path, bytes: &[u8]) -> Result<Scene, Error> {
     lacking.tell(&mut report);
     parse::warn_of_unknown(&unknown, &mut report);
     let name = file.display().to_string();
-    let mut scene = Scene { name, origin, meshes, materials, textures, report, ..Scene::default() };
+    let mut scene =
+        Scene { name, origin, meshes, materials, textures, report, files: folder.into_files(), ..Scene::default() };
     solid::mark_double_sided(&mut scene);
     Ok(scene)
 }
