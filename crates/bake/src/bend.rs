@@ -5,6 +5,7 @@
 
 use crate::directions::DirectionBank;
 use crate::gather::{Gatherer, Worker};
+use crate::ledge;
 use crate::passes::Monitor;
 use crate::progress::Stage;
 use crate::receivers::{FaceSums, Receiver};
@@ -38,17 +39,20 @@ pub(crate) struct Bends<'a> {
     vertices: Vec<Vec<Look>>,
     /// Per mesh: edges that were looked at, with what their middle sees.
     middles: Vec<BTreeMap<Edge, Look>>,
+    /// Whether light bounces, and may bend where that of the sky does not.
+    bounces: bool,
 }
 
 impl<'a> Bends<'a> {
     /// For a scene that lies on the surfaces of `world`; looks at nothing yet.
-    pub(crate) fn new(world: &'a World<'a>, scene: &Scene) -> Self {
+    pub(crate) fn new(world: &'a World<'a>, scene: &Scene, settings: &Settings) -> Self {
+        let bounces = ledge::matters(settings);
         let settings = Settings { bands: BANDS, quality: Quality::Rays(RAYS), ..settings::standard() };
         let bands = Bands::new(BANDS).expect("a constant in range");
         // The same for any seed that a bake is asked for: seeds are compared receiver by receiver.
         let bank = DirectionBank::new(bands, &settings);
         let vertices = scene.meshes.iter().map(|mesh| vec![Look::new(); mesh.positions.len()]).collect();
-        Self { world, bank, bands, vertices, middles: vec![BTreeMap::new(); scene.meshes.len()] }
+        Self { world, bank, bands, vertices, middles: vec![BTreeMap::new(); scene.meshes.len()], bounces }
     }
 
     /// The edges that `may_halve` names along which transfer bends, looking only at those that are new.
@@ -73,14 +77,39 @@ impl<'a> Bends<'a> {
             self.look_from_ends(scene, index, ends, (total, monitor))?;
             let receivers: Vec<Receiver> = new.iter().map(|(edge, sums)| sums.receiver(mesh, *edge)).collect();
             let looks = self.look(&receivers, two_sided(scene, index), (total, monitor))?;
-            for ((edge, _), look) in new.into_iter().zip(looks) {
-                if self.bend(index, edge, &look) > BEND {
+            let bend = self.bending(index, mesh, two_sided(scene, index), &new, (&receivers, &looks));
+            for (((edge, _), look), bends) in new.into_iter().zip(looks).zip(bend) {
+                if bends {
                     bent.insert(edge_place(mesh, edge));
                 }
                 self.middles[index].insert(edge, look);
             }
         }
         Ok(bent)
+    }
+
+    /// Which edges of a mesh bend: in what is seen of the sky from their middles, or in the light of surfaces beside them.
+    fn bending(
+        &self,
+        index: usize,
+        mesh: &Mesh,
+        two_sided: bool,
+        new: &[(Edge, EdgeSums)],
+        seen: (&[Receiver], &[Look]),
+    ) -> Vec<bool> {
+        let gatherer = self.gatherer();
+        let sides = if two_sided { &[1.0, -1.0][..] } else { &[1.0] };
+        let bends = |worker: &mut Worker, (((edge, _), receiver), look): ((&(Edge, EdgeSums), &Receiver), &Look)| {
+            let ends = edge.map(|v| mesh.positions[v as usize]);
+            let normals = || sides.iter().map(|side| side * receiver.geometric_normal);
+            self.bend(index, *edge, look) > BEND
+                || self.bounces && normals().any(|normal| ledge::fades(&gatherer, ends, normal, worker))
+        };
+        new.par_iter().zip(seen.0).zip(seen.1).map_init(Worker::new, bends).collect()
+    }
+
+    fn gatherer(&self) -> Gatherer<'_> {
+        Gatherer::of_direct_light(self.world, &self.bank, self.bands, Quality::Rays(RAYS))
     }
 
     /// Tells of vertices that took the middles of edges, in their order.
@@ -149,7 +178,7 @@ impl<'a> Bends<'a> {
         two_sided: bool,
         (total, monitor): (u64, &Monitor<'_>),
     ) -> Result<Vec<Look>, Error> {
-        let gatherer = Gatherer::of_direct_light(self.world, &self.bank, self.bands, Quality::Rays(RAYS));
+        let gatherer = self.gatherer();
         let one = |worker: &mut Worker, receiver: &Receiver| {
             let mut look = Look::new();
             if monitor.is_cancelled() {

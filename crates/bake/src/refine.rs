@@ -35,7 +35,8 @@ const SMALL: [f32; 2] = [1.0 / 512.0, 0.5];
 /// The scene with every edge at most as long as the settings say; borrowed where nothing is to be split.
 ///
 /// [`Refine::Auto`] takes the edge that triangles would have if as many as the scene has (or 20,000 where it has fewer) lay evenly over
-/// its surfaces, then looks where transfer bends between vertices and halves those edges up to three times; it leaves a scene alone in
+/// its surfaces, then looks where transfer bends between vertices, or bounced light where some is asked for, and halves those edges up to
+/// three times; it leaves a scene alone in
 /// which nothing casts a shadow or shadows are not asked for. Edges are split for what they are, wherever they occur, so neighbours stay joined, across meshes too.
 /// The surface stays the same; vertices of a mesh keep their indices, new ones follow.
 ///
@@ -85,7 +86,8 @@ pub fn refine_watched<'a>(
             let longest = even_edge(scene);
             let small = cubes(scene, &|m| facts.materials[m].blocks, SMALL.map(|part| part * longest));
             let (refined, small) = towards(evenly(scene, longest)?, Proximity::new(small))?;
-            let split = at_bends(refined, longest, &small, &world, &monitor)?;
+            let bends = Bends::new(&world, &refined, settings);
+            let split = at_bends(refined, longest, &small, bends, &monitor)?;
             cut_at_exits(split, &world, &monitor)
         }
     }
@@ -135,10 +137,9 @@ fn at_bends<'a>(
     mut scene: Cow<'a, Scene>,
     longest: f32,
     small: &Proximity,
-    world: &World<'_>,
+    mut bends: Bends<'_>,
     monitor: &Monitor<'_>,
 ) -> Result<Cow<'a, Scene>, Error> {
-    let mut bends = Bends::new(world, &scene);
     let most = most_triangles(&scene);
     let none = Proximity::default();
     for round in 0..if small.is_empty() { BEND_ROUNDS } else { SMALL_ROUNDS } {
