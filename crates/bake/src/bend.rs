@@ -15,6 +15,8 @@ use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
 use glam::Vec3;
 use rayon::prelude::*;
+use raytrace::{Ray, offset_origin};
+use sampling::frame::Frame;
 use scene::{Mesh, Scene};
 use sh_math::Bands;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -26,6 +28,13 @@ const RAYS: u32 = 64;
 /// Distance of the transfer in the middle from the mean of the ends', against an open receiver's, from where an edge bends:
 /// the tenth part of it costs a house three times the receivers and gains no accuracy that bounces need.
 const BEND: f32 = 0.15;
+/// The same for edges that come out of a gap, under the foot of a cup: what is lit there is little, and a bend of it shows as much.
+const BEND_AT_GAP: f32 = 0.08;
+/// An end that sees less than this lies in a gap.
+const HIDDEN: f32 = 0.02;
+/// Ends farther apart than this, in bends that matter, can hide a step: where light ends at the middle of an edge, the middle may see the
+/// mean of what the ends see, while a quarter is off by a quarter of their distance.
+const STEP: f32 = 4.0;
 
 /// What a point sees: transfer on the front and, for two-sided materials, on the back.
 type Look = Vec<f32>;
@@ -75,14 +84,22 @@ impl<'a> Bends<'a> {
                 continue;
             }
             self.look_from_ends(scene, index, ends, (total, monitor))?;
-            let receivers: Vec<Receiver> = new.iter().map(|(edge, sums)| sums.receiver(mesh, *edge)).collect();
-            let looks = self.look(&receivers, two_sided(scene, index), (total, monitor))?;
+            let receivers: Vec<Receiver> = new.iter().map(|(edge, sums)| sums.receiver(mesh, *edge, 0.5)).collect();
+            let looks = self.look(&receivers, two_sided(scene, index), (Some(total), monitor))?;
             let bend = self.bending(index, mesh, two_sided(scene, index), &new, (&receivers, &looks));
-            for (((edge, _), look), bends) in new.into_iter().zip(looks).zip(bend) {
+            let mut steep = Vec::new();
+            for (((edge, sums), look), bends) in new.into_iter().zip(looks).zip(bend) {
+                let (bend, threshold) = (self.bend(index, edge, 0.5, &look), self.threshold(index, edge));
                 if bends {
                     bent.insert(edge_place(mesh, edge));
+                } else if bend > threshold || self.rise(index, edge) > STEP * threshold {
+                    steep.push(Steep { edge, sums, bend, threshold });
                 }
                 self.middles[index].insert(edge, look);
+            }
+            if !steep.is_empty() {
+                let steps = self.steps(scene, index, steep, monitor)?;
+                bent.extend(steps.into_iter().map(|edge| edge_place(mesh, edge)));
             }
         }
         Ok(bent)
@@ -102,7 +119,7 @@ impl<'a> Bends<'a> {
         let bends = |worker: &mut Worker, (((edge, _), receiver), look): ((&(Edge, EdgeSums), &Receiver), &Look)| {
             let ends = edge.map(|v| mesh.positions[v as usize]);
             let normals = || sides.iter().map(|side| side * receiver.geometric_normal);
-            self.bend(index, *edge, look) > BEND
+            self.bend(index, *edge, 0.5, look) > BEND
                 || self.bounces && normals().any(|normal| ledge::fades(&gatherer, ends, normal, worker))
         };
         new.par_iter().zip(seen.0).zip(seen.1).map_init(Worker::new, bends).collect()
@@ -110,6 +127,43 @@ impl<'a> Bends<'a> {
 
     fn gatherer(&self) -> Gatherer<'_> {
         Gatherer::of_direct_light(self.world, &self.bank, self.bands, Quality::Rays(RAYS))
+    }
+
+    /// Of steep edges those along which light ends in a step that their middle hides, or that come out of a gap and bend a little.
+    fn steps(
+        &self,
+        scene: &Scene,
+        index: usize,
+        mut steep: Vec<Steep>,
+        monitor: &Monitor<'_>,
+    ) -> Result<Vec<Edge>, Error> {
+        let mesh = &scene.meshes[index];
+        let faces = FaceSums::of(mesh);
+        // An end inside a body takes its light from where it is moved to.
+        steep.retain(|one| {
+            one.threshold == BEND || one.edge.iter().all(|&v| !self.is_buried(&at_vertex(mesh, &faces, v)))
+        });
+        for share in [0.25, 0.75] {
+            let unsure: Vec<usize> = (0..steep.len()).filter(|&k| steep[k].bend <= steep[k].threshold).collect();
+            let at = |&k: &usize| steep[k].sums.receiver(mesh, steep[k].edge, share);
+            let receivers: Vec<Receiver> = unsure.iter().map(at).collect();
+            let looks = self.look(&receivers, two_sided(scene, index), (None, monitor))?;
+            for (k, look) in unsure.into_iter().zip(looks) {
+                steep[k].bend = self.bend(index, steep[k].edge, share, &look);
+            }
+        }
+        Ok(steep.into_iter().filter(|one| one.bend > one.threshold).map(|one| one.edge).collect())
+    }
+
+    /// Whether most of three rays from a receiver meet a body from within.
+    fn is_buried(&self, receiver: &Receiver) -> bool {
+        let origin = offset_origin(receiver.position, receiver.geometric_normal);
+        let frame = Frame::from_normal(receiver.normal);
+        let meets_inside = |way: &[f32; 3]| {
+            let ray = Ray::new(origin, frame.to_world(Vec3::from_array(*way)));
+            self.world.closest(&ray).is_some_and(|hit| self.world.bodies.is_inside(&hit))
+        };
+        TRIPOD.iter().filter(|way| meets_inside(way)).count() > 1
     }
 
     /// Tells of vertices that took the middles of edges, in their order.
@@ -140,11 +194,8 @@ impl<'a> Bends<'a> {
     ) -> Result<(), Error> {
         let mesh = &scene.meshes[index];
         let faces = FaceSums::of(mesh);
-        let receiver = |&v: &usize| {
-            Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v)).0
-        };
-        let receivers: Vec<Receiver> = ends.iter().map(receiver).collect();
-        let new = self.look(&receivers, two_sided(scene, index), watched)?;
+        let receivers: Vec<Receiver> = ends.iter().map(|&v| at_vertex(mesh, &faces, v as u32)).collect();
+        let new = self.look(&receivers, two_sided(scene, index), (Some(watched.0), watched.1))?;
         for (v, look) in ends.into_iter().zip(new) {
             self.vertices[index][v] = look;
         }
@@ -163,20 +214,37 @@ impl<'a> Bends<'a> {
         sums.into_iter().collect()
     }
 
-    /// How far the look from the middle is from the mean of the looks from the ends; the larger of both sides.
-    fn bend(&self, mesh: usize, [a, b]: Edge, middle: &Look) -> f32 {
+    /// How far the look from a share of the way along an edge is from the mean of the looks from its ends; the larger of both sides.
+    fn bend(&self, mesh: usize, [a, b]: Edge, share: f32, look: &Look) -> f32 {
         let (a, b) = (&self.vertices[mesh][a as usize], &self.vertices[mesh][b as usize]);
-        let away: Vec<f32> = middle.iter().zip(a.iter().zip(b)).map(|(m, (a, b))| m - 0.5 * (a + b)).collect();
-        let norm = |side: &[f32]| side.iter().map(|x| x * x).sum::<f32>().sqrt();
-        away.chunks_exact(self.bands.coefficients()).map(norm).fold(0.0, f32::max) / self.bank.open_norm as f32
+        self.norm(look.iter().zip(a.iter().zip(b)).map(|(m, (a, b))| m - ((1.0 - share) * a + share * b)))
     }
 
-    /// Looks from some of the points that progress is told of.
+    /// The bend from where an edge is halved.
+    fn threshold(&self, mesh: usize, edge: Edge) -> f32 {
+        let darker = edge.map(|v| self.norm(self.vertices[mesh][v as usize].iter().copied()));
+        if darker[0].min(darker[1]) < HIDDEN { BEND_AT_GAP } else { BEND }
+    }
+
+    /// How far apart the looks from the ends of an edge are.
+    fn rise(&self, mesh: usize, [a, b]: Edge) -> f32 {
+        let (a, b) = (&self.vertices[mesh][a as usize], &self.vertices[mesh][b as usize]);
+        self.norm(a.iter().zip(b).map(|(a, b)| a - b))
+    }
+
+    /// Norm of a difference of looks, against an open receiver's; the larger of both sides.
+    fn norm(&self, difference: impl Iterator<Item = f32>) -> f32 {
+        let difference: Vec<f32> = difference.collect();
+        let norm = |side: &[f32]| side.iter().map(|x| x * x).sum::<f32>().sqrt();
+        difference.chunks_exact(self.bands.coefficients()).map(norm).fold(0.0, f32::max) / self.bank.open_norm as f32
+    }
+
+    /// Looks from points; progress is told of those that it counts.
     fn look(
         &self,
         receivers: &[Receiver],
         two_sided: bool,
-        (total, monitor): (u64, &Monitor<'_>),
+        (total, monitor): (Option<u64>, &Monitor<'_>),
     ) -> Result<Vec<Look>, Error> {
         let gatherer = self.gatherer();
         let one = |worker: &mut Worker, receiver: &Receiver| {
@@ -191,13 +259,32 @@ impl<'a> Bends<'a> {
                 rays += seen.visibility_rays;
                 look.extend(seen.transfer);
             }
-            monitor.receiver_done(Stage::Refinement, total, rays);
+            if let Some(total) = total {
+                monitor.receiver_done(Stage::Refinement, total, rays);
+            }
             look
         };
         let looks = receivers.par_iter().map_init(Worker::new, one).collect();
         monitor.check()?;
         Ok(looks)
     }
+}
+
+/// An edge between ends that see very different things, or one of which sees next to nothing.
+struct Steep {
+    edge: Edge,
+    sums: EdgeSums,
+    bend: f32,
+    threshold: f32,
+}
+
+/// Three directions at 45 degrees from the normal.
+const TRIPOD: [[f32; 3]; 3] = [[0.707, 0.0, 0.707], [-0.354, 0.612, 0.707], [-0.354, -0.612, 0.707]];
+
+/// The receiver of a vertex of a mesh.
+fn at_vertex(mesh: &Mesh, faces: &FaceSums, vertex: u32) -> Receiver {
+    let v = vertex as usize;
+    Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v)).0
 }
 
 fn two_sided(scene: &Scene, mesh: usize) -> bool {
@@ -225,17 +312,19 @@ impl EdgeSums {
         self.normal += cross;
     }
 
-    fn receiver(&self, mesh: &Mesh, edge: Edge) -> Receiver {
+    /// The receiver at a share of the way along the edge.
+    fn receiver(&self, mesh: &Mesh, edge: Edge, share: f32) -> Receiver {
         let [a, b] = edge.map(|v| mesh.positions[v as usize]);
-        let middle = 0.5 * (a + b);
+        let shares = [1.0 - share, share];
+        let at = shares[0] * a + shares[1] * b;
         let shading = match mesh.normals.is_empty() {
             true => None,
-            false => Some(edge.map(|v| mesh.normals[v as usize]).iter().sum()),
+            false => Some(edge.iter().zip(shares).map(|(&v, share)| share * mesh.normals[v as usize]).sum()),
         };
         let centre = match self.from {
             Some(from) if self.area > 0.0 => from + self.centre / self.area,
-            _ => middle,
+            _ => at,
         };
-        Receiver::new(middle, shading, self.normal, centre).0
+        Receiver::new(at, shading, self.normal, centre).0
     }
 }

@@ -32,6 +32,7 @@ mod found;
 mod gather;
 mod gloss;
 mod hit;
+mod junctions;
 mod ledge;
 mod maps;
 mod material;

@@ -3,6 +3,7 @@
 use crate::bend::Bends;
 use crate::exits::cut_at_exits;
 use crate::facts::Facts;
+use crate::junctions::joined;
 use crate::passes::Monitor;
 use crate::plan::{allowed, world};
 use crate::progress::Stage;
@@ -37,7 +38,8 @@ const SMALL: [f32; 2] = [1.0 / 512.0, 0.5];
 /// [`Refine::Auto`] takes the edge that triangles would have if as many as the scene has (or 20,000 where it has fewer) lay evenly over
 /// its surfaces, then looks where transfer bends between vertices, or bounced light where some is asked for, and halves those edges up to
 /// three times; it leaves a scene alone in
-/// which nothing casts a shadow or shadows are not asked for. Edges are split for what they are, wherever they occur, so neighbours stay joined, across meshes too.
+/// which nothing casts a shadow or shadows are not asked for. Edges are split for what they are, wherever they occur, so neighbours stay joined, across meshes too;
+/// an edge along which shorter ones end is cut there first.
 /// The surface stays the same; vertices of a mesh keep their indices, new ones follow.
 ///
 /// # Errors
@@ -70,7 +72,7 @@ pub fn refine_watched<'a>(
     settings::check(settings)?;
     match settings.refine {
         Refine::Off => Ok(Cow::Borrowed(scene)),
-        Refine::Edge(longest) => evenly(scene, longest),
+        Refine::Edge(longest) => evenly(joined(scene, longest), longest),
         Refine::Auto => {
             if !allowed(settings, Effect::Visibility) {
                 return Ok(Cow::Borrowed(scene));
@@ -85,7 +87,8 @@ pub fn refine_watched<'a>(
             }
             let longest = even_edge(scene);
             let small = cubes(scene, &|m| facts.materials[m].blocks, SMALL.map(|part| part * longest));
-            let (refined, small) = towards(evenly(scene, longest)?, Proximity::new(small))?;
+            let joined = joined(scene, longest * 0.5f32.powi(BEND_ROUNDS));
+            let (refined, small) = towards(evenly(joined, longest)?, Proximity::new(small))?;
             let bends = Bends::new(&world, &refined, settings);
             let split = at_bends(refined, longest, &small, bends, &monitor)?;
             cut_at_exits(split, &world, &monitor)
@@ -110,26 +113,26 @@ fn even_edge(scene: &Scene) -> f32 {
 }
 
 /// Splits edges by their length alone.
-fn evenly(scene: &Scene, longest: f32) -> Result<Cow<'_, Scene>, Error> {
+fn evenly(mut scene: Cow<'_, Scene>, longest: f32) -> Result<Cow<'_, Scene>, Error> {
     let is_longer = |mesh: &Mesh, edge: Edge| length(mesh, edge) > longest;
     let has_longer = |mesh: &Mesh| mesh.triangles.iter().any(|t| edges(t).iter().any(|&edge| is_longer(mesh, edge)));
     if !scene.meshes.iter().any(has_longer) {
-        return Ok(Cow::Borrowed(scene));
+        return Ok(scene);
     }
-    let mut refined = scene.clone();
-    for mesh in &mut refined.meshes {
+    let name = scene.name.clone();
+    for mesh in &mut scene.to_mut().meshes {
         for _ in 0..ROUNDS {
             if !has_longer(mesh) {
                 break;
             }
             halve(mesh, is_longer);
-            check_count(&scene.name, mesh)?;
+            check_count(&name, mesh)?;
         }
         if has_longer(mesh) {
-            return Err(too_fine(&scene.name, mesh.triangles.len()));
+            return Err(too_fine(&name, mesh.triangles.len()));
         }
     }
-    Ok(Cow::Owned(refined))
+    Ok(scene)
 }
 
 /// Halves the edges along which transfer bends, while they are longer than a part of the even ones or of small objects near them.

@@ -5,6 +5,8 @@ mod support;
 use bake::refine;
 use coeff_io::{Prt, Refine, Sampler, Settings};
 use glam::{Vec3, Vec4};
+use raytrace::{Ray, Tracer};
+use sampling::frame::Frame;
 use scene::{Material, Mesh, Scene};
 use support::{fixed, quiet, under_white};
 
@@ -134,4 +136,78 @@ fn vertices_gather_where_transfer_bends() {
     let again = refine(&coarse, &bake::settings::standard()).expect("splits");
     let triangles = |scene: &Scene| scene.meshes.iter().map(|m| m.triangles.clone()).collect::<Vec<_>>();
     assert_eq!(triangles(&bent), triangles(&again), "splitting is the same each time");
+}
+
+/// Points of the saucer's well around the foot of the cup, with the open share there between the receivers and the normal.
+fn around_the_foot(prt: &Prt) -> Vec<(Vec3, Vec3, f64)> {
+    let saucer = prt.meshes.iter().find(|mesh| mesh.name == "saucer").expect("the teacup has one");
+    let triangles = prt.geometry.triangles[saucer.first_triangle as usize..][..saucer.triangles as usize].to_vec();
+    let [positions, normals] =
+        [&prt.geometry.positions, &prt.geometry.normals].map(|list| move |v: u32| Vec3::from(list[v as usize]));
+    // The upper side of the well.
+    let well: Vec<[u32; 3]> =
+        triangles.into_iter().filter(|t| t.iter().all(|&v| normals(v).y > 0.5 && positions(v).y < 0.0075)).collect();
+    let row = (prt.transfer.bands * prt.transfer.bands * prt.transfer.channels) as usize;
+    let open = |v: u32| f64::from(prt.transfer.values[v as usize * row]) * (4.0 * std::f64::consts::PI).sqrt();
+    let mut points = Vec::new();
+    for (radius, k) in [0.0242, 0.0250, 0.0258, 0.0266].into_iter().flat_map(|r| (0..144).map(move |k| (r, k))) {
+        let angle = (k as f32 + 0.25) / 144.0 * std::f32::consts::TAU;
+        let (x, z) = (radius * angle.sin(), radius * angle.cos());
+        let shares = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| positions(v));
+            let side = |p: Vec3, q: Vec3| (p.x - x) * (q.z - z) - (q.x - x) * (p.z - z);
+            let parts = Vec3::new(side(b, c), side(c, a), side(a, b));
+            let shares = parts / parts.element_sum();
+            (shares.min_element() >= -1e-4).then_some(shares)
+        };
+        let (t, shares) = well.iter().find_map(|t| Some((t, shares(t)?))).expect("the well is whole");
+        let mean = |of: &dyn Fn(u32) -> Vec3| (0..3).map(|i| shares[i] * of(t[i])).sum::<Vec3>();
+        let between = (0..3).map(|i| f64::from(shares[i]) * open(t[i])).sum();
+        points.push((mean(&positions), mean(&normals).normalize(), between));
+    }
+    points
+}
+
+/// Open share of the sky of a point: rays through the middles of cells of equal weight.
+fn open_share(tracer: &Tracer, point: Vec3, normal: Vec3) -> f64 {
+    let frame = Frame::from_normal(normal);
+    let (rows, columns) = (24, 96);
+    let open = (0..rows * columns).filter(|k| {
+        let sine = (((k / columns) as f32 + 0.5) / rows as f32).sqrt();
+        let angle = ((k % columns) as f32 + 0.5) / columns as f32 * std::f32::consts::TAU;
+        let way = Vec3::new(sine * angle.cos(), sine * angle.sin(), (1.0 - sine * sine).sqrt());
+        let ray = Ray::new(point + 1e-6 * normal, frame.to_world(way));
+        tracer.closest(&ray, &|_, _, _| true).is_none()
+    });
+    open.count() as f64 / f64::from(rows * columns)
+}
+
+/// Largest difference around the foot between the open share of the file and that by rays to the scene as it is.
+fn worst_around_the_foot(scene: &Scene, refine: Refine) -> f64 {
+    let settings = Settings { refine, ..fixed(2, Sampler::OwenSobol, 512, 0) };
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for mesh in &scene.meshes {
+        let first = positions.len() as u32;
+        positions.extend_from_slice(&mesh.positions);
+        triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    let tracer = Tracer::build(&positions, &triangles, &[]);
+    let off = |(point, normal, between): (Vec3, Vec3, f64)| (open_share(&tracer, point, normal) - between).abs();
+    around_the_foot(&quiet(scene, &settings)).into_iter().map(off).fold(0.0, f64::max)
+}
+
+/// Edges that come out of the gap under the foot of a cup are split all around it: its shadow has no teeth.
+#[test]
+fn the_shadow_at_a_foot_has_no_teeth() {
+    let cup = scene::builtin("teacup").expect("a built-in scene");
+    let worst = worst_around_the_foot(&cup, Refine::Auto);
+    assert!(worst < 0.04, "{worst} off");
+}
+
+/// Edges that are not split there show.
+#[test]
+fn the_shadow_at_a_foot_has_no_teeth_can_fail() {
+    let cup = scene::builtin("teacup").expect("a built-in scene");
+    let worst = worst_around_the_foot(&cup, Refine::Off);
+    assert!(worst > 0.07, "{worst} off where nothing is split");
 }

@@ -2,7 +2,7 @@
 
 use bake::{refine, settings};
 use coeff_io::{Refine, Settings};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use scene::{Mesh, Scene};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -94,13 +94,13 @@ fn junctions(scene: &Scene) -> usize {
     found
 }
 
-/// Refinement makes no such vertices where there were none.
+/// Refinement makes no such vertices, and joins those edges that had some: the roof of the Cornell box has an opening.
 #[test]
 fn splitting_makes_no_junctions() {
     for name in ["closed-room", "cornell-box", "sphere-on-plane"] {
         let scene = scene::builtin(name).expect("builtin");
         let refined = refine(&scene, &with(Refine::Auto)).expect("splits");
-        assert_eq!(junctions(&refined), junctions(&scene), "{name}");
+        assert_eq!(junctions(&refined), 0, "{name} with {} before", junctions(&scene));
     }
 }
 
@@ -160,4 +160,86 @@ fn auto_splits_only_what_calls_for_it() {
     let off = refine(&coarse, &with(Refine::Off)).expect("nothing to do");
     assert!(matches!(off, Cow::Borrowed(_)), "off is off");
     assert!(refine(&coarse, &with(Refine::Edge(0.0))).is_err(), "no edge has length 0");
+}
+
+/// A box of 4 by 2 by 3 whose floor and back wall are of several meshes, or of one: some edges run along parts of others. Turned, so that
+/// no plane and no edge is along an axis.
+fn patched_box(turn: Quat, one_mesh: bool) -> Scene {
+    let quad = |corner: [f32; 3], along: [f32; 3], up: [f32; 3]| {
+        let [corner, along, up] = [corner, along, up].map(Vec3::from_array);
+        Mesh {
+            positions: [corner, corner + along, corner + along + up, corner + up].map(|p| turn * p).to_vec(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        }
+    };
+    let mut meshes = vec![
+        quad([0.0, 0.0, 0.0], [0.0, 0.0, 3.0], [0.7, 0.0, 0.0]),
+        quad([0.7, 0.0, 0.0], [0.0, 0.0, 3.0], [2.2, 0.0, 0.0]),
+        quad([2.9, 0.0, 0.0], [0.0, 0.0, 3.0], [1.1, 0.0, 0.0]),
+        quad([0.0, 2.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.0, 3.0]),
+        // The back wall, one part of which begins within one part of the floor and ends within another.
+        quad([0.0, 0.0, 0.0], [1.3, 0.0, 0.0], [0.0, 2.0, 0.0]),
+        quad([1.3, 0.0, 0.0], [2.7, 0.0, 0.0], [0.0, 2.0, 0.0]),
+        quad([0.0, 0.0, 3.0], [0.0, 2.0, 0.0], [4.0, 0.0, 0.0]),
+        quad([0.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]),
+        quad([4.0, 0.0, 0.0], [0.0, 0.0, 3.0], [0.0, 2.0, 0.0]),
+    ];
+    if one_mesh {
+        let mut whole = Mesh::default();
+        for mesh in meshes.drain(..) {
+            let first = whole.positions.len() as u32;
+            whole.positions.extend(mesh.positions);
+            whole.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+        }
+        meshes.push(whole);
+    }
+    Scene { meshes, materials: vec![scene::Material::default()], ..Scene::default() }
+}
+
+/// Where an edge runs along a part of a longer one, both get the same vertices, in one mesh and across meshes, however the scene is turned.
+#[test]
+fn edges_along_parts_of_others_are_split_alike() {
+    for turn in [Quat::IDENTITY, Quat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7)] {
+        for one_mesh in [false, true] {
+            let scene = patched_box(turn, one_mesh);
+            let before = junctions(&scene);
+            assert!(before >= 6, "can fail: {before} junctions before");
+            for how in [Refine::Auto, Refine::Edge(0.23)] {
+                let refined = refine(&scene, &with(how)).expect("splits");
+                assert_eq!(junctions(&refined), 0, "{how:?}, one mesh {one_mesh}, turned {turn}");
+                assert_eq!(open_edges(&refined), 0, "every edge has its like");
+                assert!((area(&refined) / area(&scene) - 1.0).abs() < 1e-5, "the surface stays the same");
+                let kept = scene.meshes.iter().zip(&refined.meshes);
+                assert!(
+                    kept.into_iter().all(|(a, b)| b.positions.starts_with(&a.positions)),
+                    "vertices keep their indices"
+                );
+            }
+        }
+    }
+}
+
+/// An edge that only meets others, or runs beside them, stays whole.
+#[test]
+fn edges_that_only_meet_are_left_alone() {
+    let quad = |corners: [[f32; 3]; 4]| Mesh {
+        positions: corners.map(Vec3::from_array).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
+    let ground = quad([[0.0, 0.0, 0.0], [0.0, 0.0, 4.0], [4.0, 0.0, 4.0], [4.0, 0.0, 0.0]]);
+    // Its corner touches the ground's edge; the other one runs along it, a millimetre away.
+    let touching = quad([[1.3, 0.0, 0.0], [1.8, 0.5, -1.0], [1.3, 1.0, -2.0], [0.8, 0.5, -1.0]]);
+    let beside = quad([[2.3, 0.0, -0.001], [3.4, 0.0, -0.001], [3.4, 0.0, -2.0], [2.3, 0.0, -2.0]]);
+    let with_others = |others: Vec<Mesh>| {
+        let meshes = std::iter::once(ground.clone()).chain(others).collect();
+        let scene = Scene { meshes, materials: vec![scene::Material::default()], ..Scene::default() };
+        refine(&scene, &with(Refine::Edge(3.0))).expect("splits").meshes[0].positions.clone()
+    };
+    let alone = with_others(Vec::new());
+    assert_eq!(with_others(vec![touching, beside.clone()]), alone);
+    let mut along = beside;
+    along.positions.iter_mut().filter(|p| p.z == -0.001).for_each(|p| p.z = 0.0);
+    assert_ne!(with_others(vec![along]), alone, "can fail");
 }
