@@ -154,7 +154,7 @@ fn around_the_foot(prt: &Prt) -> Vec<(Vec3, Vec3, f64)> {
         let angle = (k as f32 + 0.25) / 144.0 * std::f32::consts::TAU;
         let (x, z) = (radius * angle.sin(), radius * angle.cos());
         let shares = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| positions(v));
+            let [a, b, c] = t.map(&positions);
             let side = |p: Vec3, q: Vec3| (p.x - x) * (q.z - z) - (q.x - x) * (p.z - z);
             let parts = Vec3::new(side(b, c), side(c, a), side(a, b));
             let shares = parts / parts.element_sum();
