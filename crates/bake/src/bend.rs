@@ -50,6 +50,8 @@ pub(crate) struct Bends<'a> {
     middles: Vec<BTreeMap<Edge, Look>>,
     /// Whether light bounces, and may bend where that of the sky does not.
     bounces: bool,
+    /// Per mesh: vertices whose triangles were asked about before.
+    known: Vec<u32>,
 }
 
 impl<'a> Bends<'a> {
@@ -61,19 +63,22 @@ impl<'a> Bends<'a> {
         // The same for any seed that a bake is asked for: seeds are compared receiver by receiver.
         let bank = DirectionBank::new(bands, &settings);
         let vertices = scene.meshes.iter().map(|mesh| vec![Look::new(); mesh.positions.len()]).collect();
-        Self { world, bank, bands, vertices, middles: vec![BTreeMap::new(); scene.meshes.len()], bounces }
+        let (middles, known) = (vec![BTreeMap::new(); scene.meshes.len()], vec![0; scene.meshes.len()]);
+        Self { world, bank, bands, vertices, middles, bounces, known }
     }
 
-    /// The edges that `may_halve` names along which transfer bends, looking only at those that are new.
+    /// The edges that `may_halve` names along which transfer bends, looking only at those that are new. It is told whether the edge is of a
+    /// triangle that it was not asked about before.
     pub(crate) fn find(
         &mut self,
         scene: &Scene,
-        may_halve: &dyn Fn(&Mesh, Edge) -> bool,
+        may_halve: &dyn Fn(&Mesh, Edge, bool) -> bool,
         monitor: &Monitor<'_>,
     ) -> Result<HashSet<EdgePlace>, Error> {
         let mut bent = HashSet::new();
         let unseen: Vec<_> =
             scene.meshes.iter().enumerate().map(|(index, mesh)| self.unseen(index, mesh, may_halve)).collect();
+        self.known = scene.meshes.iter().map(|mesh| mesh.positions.len() as u32).collect();
         let ends: Vec<BTreeSet<usize>> = unseen.iter().enumerate().map(|(index, new)| self.ends(index, new)).collect();
         // One count for all meshes: progress runs once from none to all.
         let total = unseen.iter().map(|new| new.len() as u64).chain(ends.iter().map(|e| e.len() as u64)).sum();
@@ -202,11 +207,12 @@ impl<'a> Bends<'a> {
         Ok(())
     }
 
-    fn unseen(&self, index: usize, mesh: &Mesh, may_halve: &dyn Fn(&Mesh, Edge) -> bool) -> Vec<(Edge, EdgeSums)> {
+    fn unseen(&self, index: usize, mesh: &Mesh, may_halve: &dyn Fn(&Mesh, Edge, bool) -> bool) -> Vec<(Edge, EdgeSums)> {
         let mut sums: BTreeMap<Edge, EdgeSums> = BTreeMap::new();
         for triangle in &mesh.triangles {
+            let new = triangle.iter().any(|&v| v >= self.known[index]);
             for edge in edges(triangle).map(sorted) {
-                if !self.middles[index].contains_key(&edge) && may_halve(mesh, edge) {
+                if may_halve(mesh, edge, new) && !self.middles[index].contains_key(&edge) {
                     sums.entry(edge).or_default().add(mesh, triangle);
                 }
             }

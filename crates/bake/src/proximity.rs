@@ -51,11 +51,6 @@ impl Proximity {
         self.nodes.first().map_or(f32::INFINITY, |node| node.smallest)
     }
 
-    /// Edges up to this length are short enough everywhere.
-    pub(crate) fn least_edge(&self) -> f32 {
-        BESIDE * self.smallest()
-    }
-
     /// Without the objects below a size.
     pub(crate) fn above(&self, size: f32) -> Self {
         Self::new(self.cubes.iter().copied().filter(|cube| cube.size >= size).collect())

@@ -148,10 +148,10 @@ fn at_bends<'a>(
     for round in 0..if small.is_empty() { BEND_ROUNDS } else { SMALL_ROUNDS } {
         let shortest = if round < BEND_ROUNDS { longest * 0.5f32.powi(round + 1) } else { f32::INFINITY };
         let small = if triangles(&scene) > most { &none } else { small };
-        let may_halve = |mesh: &Mesh, edge: Edge| {
+        let may_halve = |mesh: &Mesh, edge: Edge, new: bool| {
             let [a, b] = edge.map(|v| mesh.positions[v as usize]);
             let length = length(mesh, edge);
-            length > shortest || small.may_halve(0.5 * (a + b), length, SMALL_PART)
+            length > shortest || new && small.may_halve(0.5 * (a + b), length, SMALL_PART)
         };
         let bent = bends.find(&scene, &may_halve, monitor)?;
         if bent.is_empty() {

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::proximity::Proximity;
 use crate::refine::{LEAST_TRIANGLES, check_count};
 use crate::small::first_vertices;
-use crate::split::{Edge, EdgePlace, edge_place, edges, halve, length, sorted};
+use crate::split::{Edge, EdgePlace, Place, edge_place, edges, halve, length, place_of, sorted};
 use rayon::prelude::*;
 use scene::{Mesh, Scene};
 use std::borrow::Cow;
@@ -24,7 +24,10 @@ pub(crate) fn towards(scene: Cow<'_, Scene>, mut small: Proximity) -> Result<(Co
     }
     let firsts: Vec<Vec<u32>> = scene.meshes.par_iter().map(first_vertices).collect();
     while !small.is_empty() {
-        for coarser in COARSER {
+        // The fewest are called for where triangles may stay coarsest.
+        let fewest = called(&scene, &firsts, &small, COARSER[COARSER.len() - 1], &[]).len();
+        let within = triangles(&scene) + fewest <= most;
+        for coarser in COARSER.into_iter().filter(|_| within) {
             match split(&scene, firsts.clone(), &small, coarser, most)? {
                 Outcome::Nothing => return Ok((scene, small)),
                 Outcome::Split(refined) => return Ok((Cow::Owned(*refined), small)),
@@ -64,14 +67,23 @@ fn split(
     most: usize,
 ) -> Result<Outcome, Error> {
     let mut refined: Option<Scene> = None;
+    let mut known = Vec::new();
     for _ in 0..ROUNDS {
         let now = refined.as_ref().unwrap_or(scene);
-        let marked = called(now, &firsts, small, coarser);
+        let mut marked = called(now, &firsts, small, coarser, &known);
         if marked.is_empty() {
             break;
         }
-        let marked = closed(now, small, marked);
+        // Each edge that is halved has a triangle at least.
+        let room = most.saturating_sub(triangles(now));
+        if marked.len() <= room {
+            close(now, &mut marked);
+        }
+        if marked.len() > room {
+            return Ok(Outcome::TooMany);
+        }
         let refined = refined.get_or_insert_with(|| scene.clone());
+        known = refined.meshes.iter().map(|mesh| mesh.positions.len() as u32).collect();
         for (mesh, firsts) in refined.meshes.iter_mut().zip(&mut firsts) {
             let middles = halve(mesh, |mesh, edge| marked.contains(&edge_place(mesh, edge)));
             firsts.resize(mesh.positions.len(), 0);
@@ -85,50 +97,52 @@ fn split(
     Ok(refined.map_or(Outcome::Nothing, |refined| Outcome::Split(Box::new(refined))))
 }
 
-/// The longest edges of all triangles that are too large for what stands near them.
-fn called(scene: &Scene, firsts: &[Vec<u32>], small: &Proximity, coarser: f32) -> HashSet<EdgePlace> {
+/// The longest edges of all triangles that are too large for what stands near them. Triangles between the `known` vertices, a count per mesh,
+/// were asked about before.
+fn called(scene: &Scene, firsts: &[Vec<u32>], small: &Proximity, coarser: f32, known: &[u32]) -> HashSet<EdgePlace> {
     let mut marked = HashSet::new();
     for ((m, mesh), firsts) in (0..).zip(&scene.meshes).zip(firsts) {
         let two_sided = scene.materials[mesh.material as usize].double_sided;
+        let known = known.get(m as usize).copied().unwrap_or(0);
         let edge = |triangle: &[u32; 3]| {
             let edge = longest_edge(mesh, triangle);
             let corners = triangle.map(|v| mesh.positions[v as usize]);
             let own = [m, firsts[triangle[0] as usize]];
             small.calls_for_split(corners, length(mesh, edge) / coarser, two_sided, own).then(|| edge_place(mesh, edge))
         };
-        marked.par_extend(mesh.triangles.par_iter().filter_map(edge));
+        let new = mesh.triangles.par_iter().filter(|triangle| triangle.iter().any(|&v| v >= known));
+        marked.par_extend(new.filter_map(edge));
     }
     marked
 }
 
-/// With every edge of a triangle its longest one too, so that triangles stay as compact as they were (M.-C. Rivara, *Algorithms for refining
-/// triangular grids*, 1984).
-fn closed(scene: &Scene, small: &Proximity, mut marked: HashSet<EdgePlace>) -> HashSet<EdgePlace> {
-    // A longest edge is no shorter than the one that called for it.
-    let smallest = small.least_edge();
-    let large = |mesh: &Mesh| -> Vec<[u32; 3]> {
-        let is_large = |t: &&[u32; 3]| edges(t).iter().any(|&edge| length(mesh, edge) > smallest);
-        mesh.triangles.par_iter().filter(is_large).copied().collect()
-    };
-    let lists: Vec<Vec<[u32; 3]>> = scene.meshes.iter().map(large).collect();
-    loop {
-        let before = marked.len();
-        for (mesh, list) in scene.meshes.iter().zip(&lists) {
-            for triangle in list {
-                if edges(triangle).iter().any(|&edge| marked.contains(&edge_place(mesh, edge))) {
-                    marked.insert(edge_place(mesh, longest_edge(mesh, triangle)));
-                }
-            }
-        }
-        if marked.len() == before {
-            return marked;
-        }
+/// Marks with every edge of a triangle its longest one too, so that triangles stay as compact as they were (M.-C. Rivara, *Algorithms for
+/// refining triangular grids*, 1984).
+fn close(scene: &Scene, marked: &mut HashSet<EdgePlace>) {
+    let mut new: Vec<EdgePlace> = marked.iter().copied().collect();
+    while !new.is_empty() {
+        let ends: HashSet<Place> = new.iter().flatten().copied().collect();
+        let followed = scene.meshes.iter().flat_map(|mesh| {
+            let is_end: Vec<bool> = mesh.positions.par_iter().map(|p| ends.contains(&place_of(*p))).collect();
+            let is_marked = |edge: &Edge| {
+                edge.iter().all(|&v| is_end[v as usize]) && marked.contains(&edge_place(mesh, *edge))
+            };
+            let longest = |triangle: &[u32; 3]| {
+                edges(triangle).iter().any(is_marked).then(|| edge_place(mesh, longest_edge(mesh, triangle)))
+            };
+            mesh.triangles.par_iter().filter_map(longest).collect::<Vec<_>>()
+        });
+        let followed: Vec<EdgePlace> = followed.collect();
+        new = followed.into_iter().filter(|place| marked.insert(*place)).collect();
     }
 }
 
 /// The longest edge of a triangle; of equal ones the same whatever the winding and the mesh.
 fn longest_edge(mesh: &Mesh, triangle: &[u32; 3]) -> Edge {
-    let key = |edge: &Edge| (length(mesh, *edge).to_bits(), edge_place(mesh, *edge));
-    let [a, b, c] = edges(triangle);
-    [b, c].into_iter().fold(sorted(a), |best, edge| if key(&edge) > key(&best) { sorted(edge) } else { best })
+    let [a, b, c] = edges(triangle).map(|edge| (length(mesh, edge), sorted(edge)));
+    let longer = |one: (f32, Edge), other: (f32, Edge)| {
+        let order = one.0.total_cmp(&other.0).then_with(|| edge_place(mesh, one.1).cmp(&edge_place(mesh, other.1)));
+        if order.is_lt() { other } else { one }
+    };
+    longer(longer(a, b), c).1
 }
