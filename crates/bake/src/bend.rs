@@ -207,7 +207,12 @@ impl<'a> Bends<'a> {
         Ok(())
     }
 
-    fn unseen(&self, index: usize, mesh: &Mesh, may_halve: &dyn Fn(&Mesh, Edge, bool) -> bool) -> Vec<(Edge, EdgeSums)> {
+    fn unseen(
+        &self,
+        index: usize,
+        mesh: &Mesh,
+        may_halve: &dyn Fn(&Mesh, Edge, bool) -> bool,
+    ) -> Vec<(Edge, EdgeSums)> {
         let mut sums: BTreeMap<Edge, EdgeSums> = BTreeMap::new();
         for triangle in &mesh.triangles {
             let new = triangle.iter().any(|&v| v >= self.known[index]);

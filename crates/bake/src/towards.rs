@@ -124,9 +124,8 @@ fn close(scene: &Scene, marked: &mut HashSet<EdgePlace>) {
         let ends: HashSet<Place> = new.iter().flatten().copied().collect();
         let followed = scene.meshes.iter().flat_map(|mesh| {
             let is_end: Vec<bool> = mesh.positions.par_iter().map(|p| ends.contains(&place_of(*p))).collect();
-            let is_marked = |edge: &Edge| {
-                edge.iter().all(|&v| is_end[v as usize]) && marked.contains(&edge_place(mesh, *edge))
-            };
+            let is_marked =
+                |edge: &Edge| edge.iter().all(|&v| is_end[v as usize]) && marked.contains(&edge_place(mesh, *edge));
             let longest = |triangle: &[u32; 3]| {
                 edges(triangle).iter().any(is_marked).then(|| edge_place(mesh, longest_edge(mesh, triangle)))
             };
