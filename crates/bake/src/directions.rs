@@ -26,8 +26,9 @@ pub(crate) struct DirectionSet {
     pub(crate) zs: Vec<f32>,
     /// Relative weight of each direction: 1 where directions follow the cosine.
     pub(crate) weights: Vec<f32>,
-    /// `[coefficient][direction]`: basis function times weight.
-    pub(crate) basis: Vec<f32>,
+    /// Step by step `[coefficient][direction of the step]`: basis function times weight. A step lies in one piece, since rows as far apart as
+    /// a power of two share the lines of a cache.
+    basis: Vec<f32>,
     /// Ends of the steps, in directions.
     pub(crate) steps: Vec<Step>,
     /// Which directions lie around those after the first step.
@@ -95,9 +96,23 @@ impl DirectionBank {
 
     /// The set of a receiver, and the cosine and sine of its turn about the normal.
     pub(crate) fn pick(&self, receiver: u32) -> (&DirectionSet, [f32; 2]) {
-        let key = rng::hash(self.seed, 0xd1c, u64::from(receiver));
-        let set = (key >> 32) as usize % self.sets.len();
-        (&self.sets[set], self.turns[(key % TURNS) as usize])
+        let key = self.key(receiver);
+        (&self.sets[self.set(key)], self.turns[(key % TURNS) as usize])
+    }
+
+    /// Places of receivers in a list, those of one set together: a set that was read last is still near.
+    pub(crate) fn by_set(&self, receivers: &[u32]) -> Vec<usize> {
+        let mut places: Vec<usize> = (0..receivers.len()).collect();
+        places.sort_by_cached_key(|&k| self.set(self.key(receivers[k])));
+        places
+    }
+
+    fn key(&self, receiver: u32) -> u64 {
+        rng::hash(self.seed, 0xd1c, u64::from(receiver))
+    }
+
+    fn set(&self, key: u64) -> usize {
+        (key >> 32) as usize % self.sets.len()
     }
 }
 
@@ -114,7 +129,6 @@ impl DirectionSet {
             surroundings: Surroundings::default(),
         };
         set.fill(domain, settings.sampler, count, &ends, seed);
-        set.evaluate(bands);
         if ends.len() > 1 {
             let [xs, ys] = domain.feet(&set.xs, &set.ys, &set.zs);
             set.surroundings = Surroundings::new(&xs, &ys, &ends);
@@ -123,7 +137,7 @@ impl DirectionSet {
         for end in ends {
             // A set over the whole sphere has fewer directions than samples, and a single step.
             let end = if settings.sampler == Sampler::Stratified { n } else { end.min(n) };
-            set.steps.push(set.step(bands, end, if end == n { count } else { end }));
+            set.add_step(bands, end, if end == n { count } else { end });
         }
         set
     }
@@ -164,27 +178,31 @@ impl DirectionSet {
         }
     }
 
-    fn evaluate(&mut self, bands: Bands) {
-        let n = self.xs.len();
-        self.basis = vec![0.0; bands.coefficients() * n];
-        sh_math::evaluate_batch(bands, &self.xs, &self.ys, &self.zs, &mut self.basis);
-        for row in self.basis.chunks_exact_mut(n.max(1)) {
-            for (value, weight) in row.iter_mut().zip(&self.weights) {
+    /// Evaluates the basis of the directions after the last step, up to `end`.
+    fn add_step(&mut self, bands: Bands, end: usize, samples: usize) {
+        let (start, mut full) = match self.steps.last() {
+            Some(last) => (last.end, last.full.clone()),
+            None => (0, vec![0.0; bands.coefficients()]),
+        };
+        let (range, first) = (start..end, self.basis.len());
+        self.basis.resize(bands.coefficients() * end, 0.0);
+        let basis = &mut self.basis[first..];
+        let [xs, ys, zs] = [&self.xs, &self.ys, &self.zs].map(|axis| &axis[range.clone()]);
+        sh_math::evaluate_batch(bands, xs, ys, zs, basis);
+        for (row, sum) in basis.chunks_exact_mut(range.len().max(1)).zip(&mut full) {
+            for (value, weight) in row.iter_mut().zip(&self.weights[range.clone()]) {
                 *value *= weight;
+                *sum += f64::from(*value);
             }
         }
+        let weight = self.weights[..end].iter().map(|&w| f64::from(w)).sum();
+        self.steps.push(Step { end, weight, samples: samples as f64, full });
     }
 
-    fn step(&self, bands: Bands, end: usize, samples: usize) -> Step {
-        let n = self.xs.len();
-        let full =
-            (0..bands.coefficients()).map(|i| self.basis[i * n..i * n + end].iter().map(|&x| f64::from(x)).sum());
-        Step {
-            end,
-            weight: self.weights[..end].iter().map(|&w| f64::from(w)).sum(),
-            samples: samples as f64,
-            full: full.collect(),
-        }
+    /// Basis function times weight of the directions of one step, coefficient by coefficient.
+    pub(crate) fn basis(&self, step: std::ops::Range<usize>) -> impl Iterator<Item = &[f32]> {
+        let coefficients = self.steps[0].full.len();
+        self.basis[coefficients * step.start..coefficients * step.end].chunks_exact(step.len().max(1))
     }
 }
 

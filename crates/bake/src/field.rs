@@ -1,5 +1,8 @@
 //! One transfer vector per receiver, laid out for the sums of the bounces.
 
+/// Channels are padded to a multiple of this, so that sums run in whole blocks.
+pub(crate) const BLOCK: usize = 4;
+
 /// `[receiver][channel][coefficient, padded]`.
 #[derive(Debug, Clone)]
 pub(crate) struct Field {
@@ -11,13 +14,13 @@ pub(crate) struct Field {
 
 impl Field {
     pub(crate) fn zeros(receivers: usize, coefficients: usize, channels: usize) -> Self {
-        let stride = coefficients.next_multiple_of(4);
+        let stride = coefficients.next_multiple_of(BLOCK);
         Self { coefficients, channels, stride, values: vec![0.0; receivers * channels * stride] }
     }
 
     /// Bytes of a field.
     pub(crate) fn bytes(receivers: usize, coefficients: usize, channels: usize) -> u64 {
-        (receivers * channels * coefficients.next_multiple_of(4) * 4) as u64
+        (receivers * channels * coefficients.next_multiple_of(BLOCK) * 4) as u64
     }
 
     /// Adds receivers with zeros at the end.

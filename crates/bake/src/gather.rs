@@ -382,8 +382,7 @@ fn rotate_directions(set: &DirectionSet, frame: &Mat3, end: usize, world: &mut [
 
 /// Adds the basis of the open directions of a step to the sums.
 fn add_open(set: &DirectionSet, range: std::ops::Range<usize>, open: &[f32], sums: &mut [f64]) {
-    let n = set.xs.len();
-    for (i, sum) in sums.iter_mut().enumerate() {
-        *sum += dot(&set.basis[i * n + range.start..i * n + range.end], open);
+    for (sum, basis) in sums.iter_mut().zip(set.basis(range)) {
+        *sum += dot(basis, open);
     }
 }

@@ -45,7 +45,7 @@ pub(crate) fn prepare<'a>(scene: &'a Scene, settings: &Settings, extras: &Extras
     };
     let survey = survey(&world, &receivers.list, &traced, settings)?;
     let plan = decide(&facts, survey, traced.len() as u64, settings);
-    world.shine = shine(&facts, &plan);
+    world.set_shine(shine(&facts, &plan));
     Ok(Prepared { world, receivers, plan, traced })
 }
 

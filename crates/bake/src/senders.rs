@@ -114,15 +114,18 @@ pub(crate) fn fill_row(world: &World<'_>, hits: &[PackedHit], row: &mut Vec<Send
 
 /// Sums the weights of entries of one key.
 fn merge(row: &mut Vec<Sender>) {
-    // Stable, so that the order of the sums is that of the rays.
-    row.sort_by_key(|sender| sender.key);
-    row.dedup_by(|next, kept| {
-        let same = next.key == kept.key;
-        if same {
-            kept.weight.iter_mut().zip(next.weight).for_each(|(sum, more)| *sum += more);
+    // With its place behind the key each is one of a kind, and of one key the order of the sums is that of the rays.
+    let mut order: Vec<u64> = (0..).zip(&*row).map(|(place, sender)| u64::from(sender.key) << 32 | place).collect();
+    order.sort_unstable();
+    let mut merged: Vec<Sender> = Vec::with_capacity(row.len());
+    for place in order {
+        let next = row[place as u32 as usize];
+        match merged.last_mut().filter(|kept| kept.key == next.key) {
+            Some(kept) => kept.weight.iter_mut().zip(next.weight).for_each(|(sum, more)| *sum += more),
+            None => merged.push(next),
         }
-        same
-    });
+    }
+    *row = merged;
 }
 
 #[cfg(test)]

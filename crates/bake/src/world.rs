@@ -31,11 +31,19 @@ pub(crate) struct World<'a> {
     /// Whether rays are traced even for receivers that nothing stands above.
     pub(crate) trace_all: bool,
     /// Of each material; empty where all are matte.
-    pub(crate) shine: Vec<Shine>,
+    shine: Vec<Shine>,
+    /// What the mirror of each material sends to all sides, where it is the same everywhere on it.
+    mirrored: Vec<Option<f32>>,
     /// Which triangles bound bodies.
     pub(crate) bodies: Bodies,
     /// Cells of triangles that are too large to carry bounces.
     pub(crate) cells: Cells,
+}
+
+/// What the mirror of a dielectric part sends to all sides of light from all sides.
+fn mean_mirrored(metallic: f32, roughness: f32) -> f32 {
+    let [scale, bias] = mean_environment_brdf(roughness);
+    (1.0 - metallic) * (DIELECTRIC * scale + bias)
 }
 
 /// What becomes of light that a material mirrors, on its way to other surfaces.
@@ -66,6 +74,7 @@ impl<'a> World<'a> {
             has_masks: false,
             trace_all: false,
             shine: Vec::new(),
+            mirrored: Vec::new(),
             bodies: Bodies::default(),
             cells: Cells::default(),
         };
@@ -178,6 +187,16 @@ impl<'a> World<'a> {
         material.alpha == AlphaMode::Opaque && material.transmission <= 0.0 && !material.double_sided
     }
 
+    /// Takes over what becomes of light that each material mirrors.
+    pub(crate) fn set_shine(&mut self, shine: Vec<Shine>) {
+        self.shine = shine;
+        let even = |material: &scene::Material| {
+            let [metallic, roughness] = [material.metallic, material.roughness].map(|share| share.clamp(0.0, 1.0));
+            material.metallic_roughness_texture.is_none().then(|| mean_mirrored(metallic, roughness))
+        };
+        self.mirrored = self.scene.materials.iter().map(even).collect();
+    }
+
     /// Share of the light at a hit that the surface sends on to all sides, linear: its albedo; where it shines less what its mirror takes, and
     /// more by what the mirror of a dielectric returns on its mean where that is not sent by direction; never more than all.
     pub(crate) fn sent(&self, hit: &Hit) -> Vec3 {
@@ -193,10 +212,13 @@ impl<'a> World<'a> {
         if by_direction {
             return body;
         }
-        let [metallic, roughness] = self.scene.shine(mesh, local, hit.u, hit.v);
-        let [scale, bias] = mean_environment_brdf(roughness);
+        let material = self.scene.meshes[mesh].material as usize;
+        let mirrored = self.mirrored[material].unwrap_or_else(|| {
+            let [metallic, roughness] = self.scene.shine(mesh, local, hit.u, hit.v);
+            mean_mirrored(metallic, roughness)
+        });
         // glTF's mix returns up to 2 % more than it takes; over many bounces that would grow without end.
-        (body + (1.0 - metallic) * (DIELECTRIC * scale + bias)).min(Vec3::ONE)
+        (body + mirrored).min(Vec3::ONE)
     }
 
     /// Longest edge of a traced triangle, metres.
