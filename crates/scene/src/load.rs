@@ -28,7 +28,12 @@ fn read(path: &Path) -> Result<Scene, Error> {
         "obj" => obj::load(path, &read()?)?,
         _ => {
             let hint = "convert the scene to .gltf, .glb or .obj";
-            return Err(Error::unsupported(path, "scene", format!("the file type {extension:?}"), hint));
+            let what = if extension.is_empty() {
+                "a name without an ending".into()
+            } else {
+                format!("the file type {extension:?}")
+            };
+            return Err(Error::unsupported(path, "scene", what, hint));
         }
     };
     scene.name = path.display().to_string();

@@ -238,6 +238,16 @@ fn map_options_place_the_picture() {
 }
 
 #[test]
+fn pictures_that_are_not_read_are_told() {
+    let told = |more: &str| cube(CUBE, format!("{LIBRARY}{more}"));
+    let scene = told("map_Ks a.png\nmap_Pr -imfchan g b.png\ndisp c.png\n");
+    assert!(["map_Ks", "map_Pr", "disp"].iter().all(|word| warned(&scene, word)), "{:?}", scene.report);
+    let scene = told("map_Ka a.png\nmap_aat on\nrefl -type sphere b.png\nillum 2\n");
+    assert!(!warned(&scene, "not supported"), "what changes nothing is not told: {:?}", scene.report);
+    assert_eq!(corners(&cube(CUBE.replace("usemtl red", "usemtl \"red\""), LIBRARY)), corners(&told("")));
+}
+
+#[test]
 fn cases_of_map_options_have_their_checks() {
     // Changes of colour along the middle of a row of checks: 4 x 4 per face become 16 x 16.
     let changes = |name: &str| {

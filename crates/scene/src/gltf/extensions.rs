@@ -31,9 +31,15 @@ const READ: &[&str] = &[
 
 /// Extensions that say nothing of a scene at rest: motion, sound, behaviour, and notes for other programs.
 const IDLE: &[&str] = &[
+    "AGI_articulations",
+    "AGI_stk_metadata",
+    "CESIUM_primitive_outline",
     "EXT_instance_features",
     "EXT_mesh_features",
+    "EXT_mesh_manifold",
     "EXT_structural_metadata",
+    "FB_geometry_metadata",
+    "GODOT_single_root",
     "KHR_animation_pointer",
     "KHR_audio",
     "KHR_audio_emitter",
@@ -44,7 +50,18 @@ const IDLE: &[&str] = &[
     "KHR_implicit_shapes",
     "KHR_xmp",
     "KHR_xmp_json_ld",
+    "MOZ_hubs_components",
+    "MPEG_audio_spatial",
     "MSFT_lod",
+    "OMI_collider",
+    "OMI_physics_body",
+    "OMI_physics_shape",
+    "OMI_seat",
+    "OMI_spawn_point",
+    "VRM",
+    "VRMC_node_constraint",
+    "VRMC_springBone",
+    "VRMC_vrm",
 ];
 
 /// Beginnings of extensions that change looks or notes alone: the scene is the same without them.
@@ -54,6 +71,7 @@ const LOOKS: &[&str] = &[
     "ADOBE_materials_",
     "MSFT_materials_",
     "MSFT_packing_",
+    "NV_materials_",
     "VRMC_materials_",
     "EXT_lights_",
     "KHR_lights_",

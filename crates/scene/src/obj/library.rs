@@ -27,6 +27,9 @@ pub(super) struct Library {
 
 /// Keywords of pictures that do not begin with `map_`.
 const MAPS: [&str; 6] = ["bump", "norm", "disp", "decal", "refl", "displacement"];
+/// Pictures that mean something to the surface and are not read.
+const UNREAD: [&str; 10] =
+    ["map_ks", "map_ns", "map_pr", "map_pm", "map_tr", "map_opacity", "disp", "displacement", "map_disp", "decal"];
 
 /// The statements of one material.
 #[derive(Debug, Default, Clone)]
@@ -55,7 +58,8 @@ impl Library {
     /// The material that a `usemtl` means: with or without a comment behind either name.
     pub(super) fn find(&self, used: &str) -> Option<usize> {
         let known = |name: &str| self.exact.get(name).or_else(|| self.cut.get(name)).copied();
-        known(used).or_else(|| known(name(used))).or_else(|| known(before_hash(used)?))
+        let cut = || known(name(used)).or_else(|| known(before_hash(used)?));
+        known(used).or_else(cut).or_else(|| known(unquoted(used)))
     }
 
     fn add(&mut self, text: &str, library: &str, near: &str, report: &mut Report) {
@@ -63,6 +67,7 @@ impl Library {
         let mut cleaned = String::new();
         // Statements before the first name, or after one that is missing, belong to nothing.
         let mut named = false;
+        let mut material = String::new();
         for (line, statement) in statements(text) {
             let (word, rest) = keyword(&statement);
             let lower = word.to_ascii_lowercase();
@@ -70,9 +75,16 @@ impl Library {
             if let Some(map) = Map::parse(rest).filter(|_| lower.starts_with("map_") || MAPS.contains(&lower.as_str()))
             {
                 self.pictures.push((near.to_owned(), map.file));
+                if named && UNREAD.contains(&lower.as_str()) {
+                    warn(
+                        format!("material {material}"),
+                        format!("the picture of {word} is not supported and was left out"),
+                    );
+                }
             }
             if lower == "newmtl" {
                 named = read.is_some();
+                material = name(rest).to_owned();
             }
             match read {
                 Some(read) if named => cleaned.push_str(&read),
