@@ -16,24 +16,29 @@ pub(crate) struct Columns(pub(crate) &'static [(usize, Side)]);
 
 /// Characters of a line where there is no terminal.
 const WITHOUT_TERMINAL: usize = 120;
+/// Fewest characters of a line, however narrow a terminal is.
+const LEAST: usize = 20;
+/// Blanks before what follows the first cell of a row that does not fit beside it.
+const INDENT: usize = 2;
 /// Fewest characters of a column of words.
 const NARROWEST: usize = 9;
 
-/// Characters of a line of the terminal that stdout leads to.
+/// Characters of a line: what `COLUMNS` says, else those of the terminal.
 pub(crate) fn terminal_width() -> usize {
-    terminal_size::terminal_size().map_or(WITHOUT_TERMINAL, |(width, _)| usize::from(width.0))
+    let told = std::env::var("COLUMNS").ok().and_then(|text| text.trim().parse().ok()).filter(|width| *width > 0);
+    let terminal = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
+    told.or_else(terminal).unwrap_or(WITHOUT_TERMINAL).max(LEAST)
 }
 
 impl Columns {
     /// Width of a whole line.
     pub(crate) fn width(&self) -> usize {
-        self.fitted(terminal_width()).iter().map(|width| width + GAP).sum::<usize>() - GAP
+        line(&self.fitted(terminal_width())).min(terminal_width())
     }
 
     /// Widths of the columns in a line of `most` characters: columns of words give way, those of numbers do not.
     fn fitted(&self, most: usize) -> Vec<usize> {
         let mut widths: Vec<usize> = self.0.iter().map(|(width, _)| *width).collect();
-        let line = |widths: &[usize]| widths.iter().map(|width| width + GAP).sum::<usize>() - GAP;
         while line(&widths) > most {
             let words = |index: &usize| self.0[*index].1 == Side::Left && widths[*index] > NARROWEST;
             let Some(widest) = (0..widths.len()).filter(words).max_by_key(|&index| widths[index]) else { break };
@@ -44,7 +49,15 @@ impl Columns {
 
     /// One row; it takes as many lines as its longest cell, without blanks at the ends of lines.
     pub(crate) fn row(&self, cells: &[&str]) -> String {
-        let widths = self.fitted(terminal_width());
+        self.row_in(cells, terminal_width())
+    }
+
+    /// The same in lines of `most` characters.
+    fn row_in(&self, cells: &[&str], most: usize) -> String {
+        let widths = self.fitted(most);
+        if line(&widths) > most {
+            return stacked(cells, most);
+        }
         let wrapped: Vec<Vec<String>> = cells.iter().zip(&widths).map(|(cell, width)| wrap(cell, *width)).collect();
         let height = wrapped.iter().map(Vec::len).max().unwrap_or(0);
         let mut text = String::new();
@@ -63,6 +76,33 @@ impl Columns {
         }
         text
     }
+}
+
+/// Width of a line of columns.
+fn line(widths: &[usize]) -> usize {
+    widths.iter().map(|width| width + GAP).sum::<usize>() - GAP
+}
+
+/// A row that does not fit: its first cell, and below it the others one after the other.
+fn stacked(cells: &[&str], most: usize) -> String {
+    let (first, others) = cells.split_first().map_or(("", [].as_slice()), |(first, others)| (*first, others));
+    let others: Vec<&str> = others.iter().copied().filter(|cell| !cell.trim().is_empty()).collect();
+    let head = wrap(first, most).into_iter().map(|line| line + "\n");
+    let rest = wrap(&others.join("; "), most - INDENT).into_iter().filter(|line| !line.is_empty());
+    head.chain(rest.map(|line| format!("{}{line}\n", " ".repeat(INDENT)))).collect()
+}
+
+/// A name and what is said of it: beside each other, with the lines of the text below each other.
+pub(crate) fn entry(name: &str, column: usize, text: &str) -> String {
+    let most = terminal_width();
+    // Beside a long column too little is left.
+    if name.chars().count() >= column || column + 2 * NARROWEST > most {
+        return stacked(&[name, text], most);
+    }
+    let mut lines = wrap(text, most - column).into_iter();
+    let first = format!("{name:<column$}{}", lines.next().unwrap_or_default());
+    let rest = lines.map(|line| format!("{}{line}\n", " ".repeat(column)));
+    format!("{}\n", first.trim_end()) + &rest.collect::<String>()
 }
 
 /// Breaks a text at blanks into lines of at most `width` characters; a longer word is cut.
@@ -154,7 +194,10 @@ mod tests {
         let columns = Columns(&[(20, Side::Left), (7, Side::Right), (30, Side::Left)]);
         assert_eq!(columns.fitted(100), [20, 7, 30]);
         assert_eq!(columns.fitted(51), [20, 7, 20]);
-        assert_eq!(columns.fitted(10), [NARROWEST, 7, NARROWEST], "what cannot fit stays readable");
+        assert_eq!(columns.fitted(10), [NARROWEST, 7, NARROWEST], "what cannot fit stands below");
+        let row = columns.row_in(&["one two three", "1234567", "four five six seven"], 20);
+        assert_eq!(row, "one two three\n  1234567; four five\n  six seven\n");
+        assert!(columns.row_in(&["one", "2", "three"], 29).starts_with("one              2  three"));
     }
 
     #[test]

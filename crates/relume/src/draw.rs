@@ -33,6 +33,7 @@ pub(crate) struct Drawer<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Window {
     /// Nothing: the light as its coefficients have it.
+    #[value(alias = "off")]
     None,
     /// The mildest window under which the light is nowhere negative; none where nothing rings.
     Auto,

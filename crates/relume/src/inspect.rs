@@ -1,6 +1,6 @@
 //! `relume inspect`: what a baked file holds, and whether it is sound.
 
-use crate::columns::{Columns, Side, bytes, count};
+use crate::columns::{Columns, Side, bytes, count, entry};
 use crate::console::Console;
 use crate::inspect_gloss::{surfaces_json, surfaces_text};
 use crate::inspect_maps::{maps_json, maps_text, volume_json, volume_text};
@@ -8,7 +8,6 @@ use crate::inspect_words::{bounces, changes, effects, quality, sampler};
 use anyhow::{Context, Result, bail};
 use coeff_io::{Chunk, EffectCost, Inspection, Kind};
 use serde_json::json;
-use std::fmt::Write;
 use std::path::PathBuf;
 
 pub(crate) const EXAMPLES: &str = "\
@@ -17,6 +16,9 @@ Examples:
   relume inspect atrium.prt --json | jq .header.achieved
 
 Fails when a checksum is wrong or the file contradicts itself.";
+
+/// Characters of the column of names.
+const NAMES: usize = 17;
 
 const COLUMNS: Columns = Columns(&[
     (15, Side::Left),
@@ -27,6 +29,8 @@ const COLUMNS: Columns = Columns(&[
     (8, Side::Right),
     (38, Side::Left),
 ]);
+
+const CHUNK_COLUMNS: Columns = Columns(&[(9, Side::Left), (12, Side::Right), (12, Side::Right), (16, Side::Left)]);
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Options {
@@ -44,7 +48,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     crate::source::check_baked(path)?;
     let seen = coeff_io::inspect(path).with_context(about)?;
     let sums = coeff_io::check(path, &seen.chunks).with_context(about)?;
-    let text = if options.json { as_json(&seen, &sums) } else { as_text(&seen, &sums)? };
+    let text = if options.json { as_json(&seen, &sums) } else { as_text(&seen, &sums) };
     console.print(&text)?;
     let damaged = seen.chunks.iter().zip(&sums).filter(|(chunk, sum)| chunk.crc32 != **sum);
     let damaged: Vec<String> = damaged.map(|(chunk, _)| chunk.kind.to_string()).collect();
@@ -54,10 +58,10 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     // Sound bytes can still contradict each other.
     let prt = coeff_io::Prt::read(path).with_context(about)?;
     if prt.achieved.error[2] > 0.0 && !options.json {
-        console.print(&format!("worst error {}\n", crate::bake::worst_place(&prt)))?;
+        console.print(&entry("worst error", NAMES, &crate::bake::worst_place(&prt)))?;
     }
     if let Some(text) = crate::interpolation::text(&prt).filter(|_| !options.json) {
-        console.print(&format!("error between receivers {text}\n"))?;
+        console.print(&entry("interpolation", NAMES, &format!("error between receivers: {text}")))?;
     }
     console.next(&crate::source::render_command(path, "builtin:sky"));
     Ok(())
@@ -93,19 +97,20 @@ fn vertices(seen: &Inspection) -> u64 {
     elements(seen, Kind::Positions, 12)
 }
 
-fn as_text(seen: &Inspection, sums: &[u32]) -> Result<String> {
+fn as_text(seen: &Inspection, sums: &[u32]) -> String {
     let mut text = String::new();
-    write_header(&mut text, seen)?;
-    writeln!(text)?;
+    write_header(&mut text, seen);
+    text.push('\n');
     write_effects(&mut text, seen);
-    writeln!(text, "\nchunks           offset        bytes  crc32")?;
+    text.push_str(&format!("\n{}", CHUNK_COLUMNS.row(&["chunks", "offset", "bytes", "crc32"])));
     for (chunk, sum) in seen.chunks.iter().zip(sums) {
         let name =
             if chunk.kind.repeats() { format!("{} {}", chunk.kind, chunk.index) } else { chunk.kind.to_string() };
-        let state = if chunk.crc32 == *sum { "" } else { "  DAMAGED" };
-        writeln!(text, "  {name:<9} {:>12} {:>12}  {:08x}{state}", chunk.offset, chunk.length, chunk.crc32)?;
+        let state = if chunk.crc32 == *sum { "" } else { " DAMAGED" };
+        let (offset, length) = (chunk.offset.to_string(), chunk.length.to_string());
+        text.push_str(&CHUNK_COLUMNS.row(&[&name, &offset, &length, &format!("{:08x}{state}", chunk.crc32)]));
     }
-    Ok(text)
+    text
 }
 
 /// What was decided, and what it took and saved.
@@ -121,60 +126,61 @@ fn write_effects(text: &mut String, seen: &Inspection) {
         text.push_str(&COLUMNS.row(&cells));
     }
     let survey = &plan.survey;
-    text.push_str(&format!("survey before the bake: {} rays for {} receivers\n", survey.rays, survey.receivers));
+    let looked = format!("{} rays for {} receivers, before the bake", survey.rays, survey.receivers);
+    text.push_str(&entry("survey", NAMES, &looked));
 }
 
-fn write_header(text: &mut String, seen: &Inspection) -> Result<()> {
+fn write_header(text: &mut String, seen: &Inspection) {
     let header = &seen.header;
     let (settings, achieved) = (&header.settings, &header.achieved);
-    let mut row = |name: &str, value: String| writeln!(text, "{name:<16} {value}");
-    row("format", format!("version {}, {}, written by {}", seen.version, bytes(seen.file_length), header.generator))?;
-    row("convention", header.convention.clone())?;
-    row("scene", header.scene.clone())?;
+    let mut row = |name: &str, value: String| text.push_str(&entry(name, NAMES, &value));
+    row("format", format!("version {}, {}, written by {}", seen.version, bytes(seen.file_length), header.generator));
+    row("convention", header.convention.clone());
+    row("scene", header.scene.clone());
     let (meshes, materials, textures) = (header.meshes.len(), header.materials.len(), header.textures.len());
     row(
         "geometry",
         format!("{} vertices, {} triangles, {meshes} meshes", vertices(seen), elements(seen, Kind::Triangles, 12)),
-    )?;
+    );
     if header.origin != [0.0; 3] {
         let [x, y, z] = header.origin;
-        row("origin", format!("({x}, {y}, {z}) m was taken off all positions"))?;
+        row("origin", format!("({x}, {y}, {z}) m was taken off all positions"));
     }
-    row("surfaces", format!("{materials} materials, {textures} textures"))?;
-    row("cameras", header.cameras.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "))?;
-    row("transfer", format!("{} bands, {} channel(s)", header.bands, header.channels))?;
+    row("surfaces", format!("{materials} materials, {textures} textures"));
+    row("cameras", header.cameras.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", "));
+    row("transfer", format!("{} bands, {} channel(s)", header.bands, header.channels));
     if let Some(maps) = &header.maps {
-        row("light maps", maps_text(maps, seen))?;
+        row("light maps", maps_text(maps, seen));
     }
     if let Some(volume) = &header.volume {
-        row("volume", volume_text(volume, seen))?;
+        row("volume", volume_text(volume, seen));
     }
     if let Some(text) = surfaces_text(seen) {
-        row("gloss", text)?;
+        row("gloss", text);
     }
-    row("asked for", format!("{}, {}, {}", quality(settings), bounces(settings.bounces), effects(&settings.effects)))?;
+    row("asked for", format!("{}, {}, {}", quality(settings), bounces(settings.bounces), effects(&settings.effects)));
     row(
         "sampler",
         format!("{}, seed {}, {} of memory", sampler(settings.sampler), settings.seed, bytes(settings.memory)),
-    )?;
+    );
     let worst = achieved.worst_receiver;
-    row("error", format!("{}; receiver {worst} is worst", crate::bake::error(settings.quality, achieved.error)))?;
+    let known = if achieved.error[2] > 0.0 { format!("; receiver {worst} is worst") } else { String::new() };
+    row("error", crate::bake::error(settings.quality, achieved.error) + &known);
     row(
         "rays",
         format!("{} for visibility, {} for bounces", count(achieved.visibility_rays), count(achieved.bounce_rays)),
-    )?;
+    );
     if let Some(maps) = &achieved.maps {
-        row("maps", crate::bake::light_maps(maps, settings.quality))?;
+        row("maps", crate::bake::light_maps(maps, settings.quality));
     }
     if let Some(gloss) = &achieved.gloss {
-        row("textures", crate::bake::gloss_text(gloss, settings.quality))?;
+        row("textures", crate::bake::gloss_text(gloss, settings.quality));
     }
-    row("bounces", changes(achieved.bounces, &achieved.bounce_changes))?;
+    row("bounces", changes(achieved.bounces, &achieved.bounce_changes));
     if let Some(text) = crate::bounces::summed(achieved) {
-        row("tail", text)?;
+        row("tail", text);
     }
     let repairs = achieved.repairs;
     let (inside, normals) = (repairs.inside, repairs.bad_normals);
-    row("repairs", format!("{inside} inside geometry, {normals} bad normals, {} not repaired", repairs.unrepaired))?;
-    Ok(())
+    row("repairs", format!("{inside} inside geometry, {normals} bad normals, {} not repaired", repairs.unrepaired));
 }

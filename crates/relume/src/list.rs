@@ -1,8 +1,12 @@
 //! `relume list`: the built-in scenes and light probes.
 
+use crate::columns::entry;
 use crate::console::Console;
 use anyhow::Result;
 use std::fmt::Write;
+
+/// Characters of the column of names: the longest stand above what is said of them.
+const NAMES: usize = 31;
 
 pub(crate) fn run(console: &Console) -> Result<()> {
     let mut text = String::new();
@@ -13,7 +17,7 @@ pub(crate) fn run(console: &Console) -> Result<()> {
     ] {
         writeln!(text, "{title}:")?;
         for (name, what) in entries {
-            writeln!(text, "  {:<28} {what}", format!("builtin:{name}"))?;
+            text.push_str(&entry(&format!("  builtin:{name}"), NAMES, what));
         }
     }
     console.print(&text)

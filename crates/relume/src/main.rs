@@ -45,7 +45,6 @@ mod visitor;
 mod volume;
 
 use arguments::{Arguments, Command};
-use clap::Parser;
 use console::Console;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -55,7 +54,7 @@ fn main() -> ExitCode {
     let began = Instant::now();
     // First of all: whatever follows may be interrupted.
     let watched = interrupt::watch();
-    let arguments = Arguments::parse();
+    let arguments = arguments::parse();
     let console = Console::new(arguments.quiet, arguments.verbose, began);
     match watched.and_then(|()| run(&arguments, &console)) {
         Ok(()) => ExitCode::SUCCESS,

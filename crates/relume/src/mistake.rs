@@ -1,5 +1,6 @@
 //! What may have been meant where a name leads to nothing, or to a file of another kind.
 
+use std::io::Read;
 use std::path::Path;
 
 /// The kinds of files that commands read.
@@ -11,8 +12,22 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
+    /// The kind of a file that is there, whatever its name is.
+    fn of_bytes(path: &Path) -> Option<Self> {
+        let mut head = Vec::new();
+        std::fs::File::open(path).ok()?.take(16).read_to_end(&mut head).ok()?;
+        let kinds: [(&[u8], Self); 5] = [
+            (&coeff_io::MAGIC, Self::Baked),
+            (b"glTF", Self::Scene),
+            (b"\x76\x2f\x31\x01", Self::Probe),
+            (b"#?RADIANCE", Self::Probe),
+            (b"#?RGBE", Self::Probe),
+        ];
+        kinds.into_iter().find(|(magic, _)| head.starts_with(magic)).map(|(_, kind)| kind)
+    }
+
     /// The kind that a file of this name has.
-    fn of(path: &Path) -> Option<Self> {
+    pub(crate) fn of(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
             "gltf" | "glb" | "obj" => Some(Self::Scene),
@@ -27,6 +42,15 @@ impl Kind {
             Self::Scene => "a scene",
             Self::Probe => "a light probe",
             Self::Baked => "a baked file",
+        }
+    }
+
+    /// What it is called behind "no".
+    fn noun(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::Probe => "light probe",
+            Self::Baked => ".prt file",
         }
     }
 
@@ -48,10 +72,17 @@ pub(crate) fn about(path: &Path, wanted: Kind, builtins: &[&str]) -> Option<Stri
         let hint = hint.unwrap_or_default();
         return Some(format!("{shown} is a folder: give {}{hint}", wanted.choices()));
     }
+    if path.as_os_str().is_empty() {
+        return Some(format!("the name is empty: give {}", wanted.choices()));
+    }
     if !path.exists() {
         return missing(path, wanted, builtins);
     }
-    let found = Kind::of(path).filter(|found| *found != wanted && !path.is_dir())?;
+    if path.is_file() && path.metadata().is_ok_and(|metadata| metadata.len() == 0) {
+        return Some(format!("{shown} is empty and no {}: give {}", wanted.noun(), wanted.choices()));
+    }
+    let of_bytes = if path.is_file() { Kind::of_bytes(path) } else { None };
+    let found = of_bytes.or(Kind::of(path)).filter(|found| *found != wanted && !path.is_dir())?;
     let next = match (wanted, found) {
         (Kind::Scene, Kind::Baked) => "give the scene that it was baked from, or draw it with `relume render`".into(),
         (Kind::Baked, Kind::Scene) => format!("bake it first: `relume bake {shown} -o {}`", with_prt(path)),
@@ -60,7 +91,10 @@ pub(crate) fn about(path: &Path, wanted: Kind, builtins: &[&str]) -> Option<Stri
         }
         _ => format!("give {}", wanted.choices()),
     };
-    Some(format!("{shown} is {}, not {}: {next}", found.name(), wanted.name()))
+    Some(match Kind::of(path) == Some(wanted) {
+        true => format!("{shown} holds {} and is no {}: {next}", found.name(), wanted.noun()),
+        false => format!("{shown} is {}, not {}: {next}", found.name(), wanted.name()),
+    })
 }
 
 fn with_prt(path: &Path) -> String {
@@ -70,6 +104,11 @@ fn with_prt(path: &Path) -> String {
 /// What a name that leads to no file may have meant.
 fn missing(path: &Path, wanted: Kind, builtins: &[&str]) -> Option<String> {
     let text = path.to_str()?;
+    if let Some(name) = text.strip_prefix("builtin:").filter(|_| wanted == Kind::Baked) {
+        return Some(format!("{text} is not baked yet: `relume bake {text} -o {name}.prt`"));
+    }
+    let text =
+        text.strip_prefix("builtin").map_or(text, |rest| rest.trim_start_matches(['-', '_', '/', '.', ' ', '=']));
     let bare = text.split(':').next().unwrap_or(text);
     if builtins.contains(&bare) {
         return Some(format!("there is no file {text}; did you mean builtin:{text}?"));
@@ -121,7 +160,7 @@ mod tests {
     fn other_kinds_are_told() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["house.glb", "house.prt", "sky.hdr"] {
-            std::fs::write(folder.path().join(name), "").unwrap();
+            std::fs::write(folder.path().join(name), "some").unwrap();
         }
         let said = |name: &str, wanted| about(&folder.path().join(name), wanted, &["atrium"]).unwrap_or_default();
         assert!(said("house.prt", Kind::Scene).contains("relume render"));
@@ -131,6 +170,14 @@ mod tests {
         assert!(said("huose.glb", Kind::Scene).contains("did you mean"));
         assert!(said("", Kind::Scene).contains("folder") && said("", Kind::Scene).contains("house.glb"));
         assert_eq!([said("house.glb", Kind::Scene), said("", Kind::Probe)], ["", ""]);
+        std::fs::write(folder.path().join("none.glb"), "").unwrap();
+        assert!(said("none.glb", Kind::Scene).contains("is empty"));
+        std::fs::write(folder.path().join("odd.glb"), b"#?RADIANCE\n").unwrap();
+        assert!(said("odd.glb", Kind::Scene).contains("--probe") && said("odd.glb", Kind::Probe).is_empty());
+        let dashed = about(Path::new("builtin-atrium"), Kind::Scene, &["atrium"]);
+        assert!(dashed.unwrap().contains("did you mean builtin:atrium?"));
+        assert!(about(Path::new("builtin:atrium"), Kind::Baked, &[]).unwrap().contains("relume bake builtin:atrium"));
+        assert!(about(Path::new(""), Kind::Scene, &[]).unwrap().contains("empty"));
         let builtin = about(Path::new("atrium"), Kind::Scene, &["atrium"]);
         assert!(builtin.unwrap().contains("builtin:atrium"));
     }

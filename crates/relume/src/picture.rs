@@ -21,7 +21,7 @@ pub(crate) struct Size {
 /// Parses `WxH`.
 pub(crate) fn size(text: &str) -> Result<Size, String> {
     let side = |text: &str| text.parse().ok().filter(|n| (1..=LARGEST_SIDE).contains(n));
-    match text.split_once('x').map(|(width, height)| (side(width), side(height))) {
+    match text.split_once(['x', 'X', '×']).map(|(width, height)| (side(width), side(height))) {
         Some((Some(width), Some(height))) => Ok(Size { width, height }),
         _ => Err(format!("give width and height from 1 to {LARGEST_SIDE}, such as 960x540")),
     }
@@ -97,6 +97,7 @@ pub(crate) struct DisplayOptions {
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum Curve {
     /// Cut at 1.
+    #[value(alias = "off")]
     None,
     /// x / (1 + x).
     Reinhard,

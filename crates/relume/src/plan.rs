@@ -1,6 +1,6 @@
 //! `relume plan`: which effects a scene calls for and why, and what each will cost; bakes nothing.
 
-use crate::columns::{Columns, Side, bytes, count, seconds, wrap};
+use crate::columns::{Columns, Side, bytes, count, entry, seconds, wrap};
 use crate::console::Console;
 use crate::light_facts::LightFacts;
 use crate::settings::{BakeOptions, Storage};
@@ -72,10 +72,11 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         if storage == Storage::Auto {
             let choice = bake::storage(&scene, &settings).map_err(crate::bake::fault)?;
             let texels = choice.texels.map_or(String::new(), |n| format!(" (--texels {n} in all)"));
-            text.push_str(&format!("\nstorage: {}{texels}\n", choice.reason));
+            let reason = format!("{}{texels}", choice.reason);
+            text.push_str(&format!("\n{}", entry("storage:", INDENT, &reason)));
         }
         if let Some(light) = &light {
-            text.push_str(&format!("\n{}\n", light.text(price.plan.bands)));
+            text.push_str(&format!("\n{}", entry("light:", INDENT, &light.text(price.plan.bands))));
         }
         text
     };

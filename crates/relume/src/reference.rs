@@ -68,7 +68,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = settings::bounces, help_heading = "Image")]
     bounces: Bounces,
     /// Columns and rows.
-    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size, help_heading = "Image")]
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size, allow_hyphen_values = true, help_heading = "Image")]
     size: Size,
     /// The view: the name of a camera, or eye x,y,z, target x,y,z and vertical angle of view in degrees.
     #[arg(long, value_name = "NAME|EYE,TARGET,FOV", value_parser = lens::parse, allow_hyphen_values = true, help_heading = "Image")]

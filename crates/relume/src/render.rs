@@ -45,7 +45,7 @@ pub(crate) struct Options {
     #[arg(short, long, value_name = "FILE", value_parser = picture::target, help_heading = "Image")]
     output: Target,
     /// Columns and rows.
-    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size, help_heading = "Image")]
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = picture::size, allow_hyphen_values = true, help_heading = "Image")]
     size: Size,
     /// Turns the light, in degrees: yaw about y (upwards), then pitch about the turned x, then roll about the turned z.
     #[arg(long, value_name = "YAW,PITCH,ROLL", default_value = "0,0,0", value_parser = rotation, allow_hyphen_values = true, help_heading = "Light probe")]

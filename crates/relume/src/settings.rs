@@ -197,7 +197,13 @@ fn effect(name: &str) -> Result<Effect, String> {
         Some(Effect::Bands) => Err("the number of bands is set by --bands".into()),
         Some(Effect::Motion) => Err("moving objects are not simulated".into()),
         Some(effect) => Ok(effect),
-        None => Err(format!("'{name}' is no effect")),
+        None => {
+            let names: Vec<&str> = Effect::ALL.iter().map(|effect| effect.name()).collect();
+            let names = &names[..];
+            let list = || format!("there are auto, all, none, or a list of {}", names.join(", "));
+            let meant = crate::mistake::nearest(name, names).map(|name| format!("did you mean {name}?"));
+            Err(format!("'{name}' is no effect; {}", meant.unwrap_or_else(list)))
+        }
     }
 }
 
@@ -222,15 +228,14 @@ pub(crate) fn seconds(text: &str) -> Result<f32, String> {
     }
 }
 
-/// Parses a number of bytes with K, M or G.
+/// Parses a number of bytes with K, M, G or T, which may be written KB or KiB too.
 pub(crate) fn bytes(text: &str) -> Result<u64, String> {
-    let (digits, unit) = match text.char_indices().next_back() {
-        Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
-        Some((at, 'M' | 'm')) => (&text[..at], 1 << 20),
-        Some((at, 'G' | 'g')) => (&text[..at], 1 << 30),
-        _ => (text, 1),
-    };
-    let number: u64 = digits.parse().map_err(|_| "give a number of bytes, such as 4G".to_owned())?;
+    let lower = text.trim().to_ascii_lowercase();
+    let bare = lower.strip_suffix('b').map_or(lower.as_str(), |rest| rest.strip_suffix('i').unwrap_or(rest));
+    let units = [('k', 1u64 << 10), ('m', 1 << 20), ('g', 1 << 30), ('t', 1 << 40)];
+    let unit = units.into_iter().find_map(|(letter, unit)| Some((bare.strip_suffix(letter)?, unit)));
+    let (digits, unit) = unit.unwrap_or((bare, 1));
+    let number: u64 = digits.trim_end().parse().map_err(|_| "give a number of bytes, such as 500M or 4G".to_owned())?;
     number.checked_mul(unit).ok_or_else(|| "that is more than any machine has".into())
 }
 
@@ -243,7 +248,9 @@ mod tests {
         assert_eq!(["0.01", "1%", "1 %", "x%", "nan"].map(share), [Some(0.01), Some(0.01), Some(0.01), None, None]);
         assert!(error("5%") == Ok(0.05) && error("0").is_err() && error("-1").is_err());
         assert_eq!(bytes("4G"), Ok(4 << 30));
-        assert_eq!(bytes("100"), Ok(100));
+        assert_eq!(["4GB", "4 GiB", "4g", "4096M"].map(bytes), [const { Ok(4 << 30) }; 4]);
+        assert_eq!(["100", "100B"].map(bytes), [const { Ok(100) }; 2]);
+        assert!(["iB", "4X", "10%", "1.5G", ""].iter().all(|text| bytes(text).is_err()));
         assert!(bytes("G").is_err() && bytes("-1").is_err() && bytes("99999999999G").is_err());
         assert_eq!(seconds("90"), Ok(90.0));
         assert_eq!(seconds("1.5m"), Ok(90.0));

@@ -53,16 +53,30 @@ fn unknown(name: &str, known: &[&[(&str, &str)]]) -> Usage {
     let form = forms.iter().find(|form| bare_name(form) == kind);
     match (form, numbers) {
         (Some(form), Some(numbers)) if form.contains('[') => {
-            Usage(format!("'{numbers}' does not fit builtin:{kind}: it is typed builtin:{form}"))
+            let range = range(kind).map_or(String::new(), |range| format!(", {range}"));
+            Usage(format!("'{numbers}' does not fit builtin:{kind}: it is typed builtin:{form}{range}"))
         }
         (Some(_), Some(_)) => Usage(format!("builtin:{kind} takes no numbers: give builtin:{kind}")),
         _ => {
             let bare: Vec<&str> = forms.iter().map(|form| bare_name(form)).collect();
+            // Numbers may have been set off by something else.
+            let kind = kind.trim().split([' ', ',', '=', '(']).next().unwrap_or(kind);
             let meant =
                 mistake::nearest(kind, &bare).map_or(String::new(), |name| format!("; did you mean builtin:{name}?"));
             let there_are = if meant.is_empty() { format!("; there are {}", forms.join(", ")) } else { meant };
             Usage(format!("there is no 'builtin:{name}'{there_are}"))
         }
+    }
+}
+
+/// What the numbers behind the name of a light may be.
+fn range(kind: &str) -> Option<&'static str> {
+    match kind {
+        "constant" | "hemisphere" => Some("radiance from 0 on"),
+        "cone" => Some("a half angle from 0 to 90 degrees"),
+        "sphere" => Some("a distance from 1 on"),
+        "sky" => Some("the sun from 1 to 90 degrees above the horizon"),
+        _ => None,
     }
 }
 
@@ -75,8 +89,8 @@ fn bare_name(form: &str) -> &str {
 fn check_kind(path: &Path, wanted: Kind, known: &[&[(&str, &str)]]) -> Result<()> {
     let names: Vec<&str> = known.iter().copied().flatten().map(|(form, _)| bare_name(form)).collect();
     match mistake::about(path, wanted, &names) {
-        // A missing file is a failure, as it is to every other reader of files.
-        Some(text) if !path.exists() => anyhow::bail!(text),
+        // A file that is missing, or not what its name says, is a failure, as it is to every other reader of files.
+        Some(text) if !path.exists() || Kind::of(path) == Some(wanted) => anyhow::bail!(text),
         Some(text) => Err(Usage(text).into()),
         None => Ok(()),
     }

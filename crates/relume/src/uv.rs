@@ -1,6 +1,6 @@
 //! `relume uv`: whether a scene's light-map coordinates serve, and how the program would unwrap it.
 
-use crate::columns::{Columns, Side};
+use crate::columns::{Columns, Side, terminal_width, wrap};
 use crate::console::Console;
 use crate::output;
 use crate::picture::{self, Size, Target};
@@ -164,7 +164,7 @@ fn as_text(scene: &Scene, atlas: Option<&Atlas>, faults: &[Fault], most: usize) 
         text.push('\n');
     }
     for fault in faults.iter().take(most) {
-        text.push_str(&sentence(scene, fault));
+        text.push_str(&(wrap(&sentence(scene, fault), terminal_width() - 2).join("\n  ") + "\n"));
     }
     if faults.len() > most {
         text.push_str(&format!("and {} more (--all lists them)\n", faults.len() - most));

@@ -147,6 +147,86 @@ fn shares_and_signs_are_understood() {
     assert!(String::from_utf8_lossy(&seen.stdout).contains("error 5 %"), "{}", String::from_utf8_lossy(&seen.stdout));
 }
 
+/// A minus before a number is a wrong value and no option; complaints of parsers say what to do instead.
+#[test]
+fn wrong_numbers_are_told_what_they_should_be() {
+    let bake = |option: &'static str, value: &'static str| vec!["bake", "builtin:plane", "-o", "a.prt", option, value];
+    let draw = |option: &'static str, value: &'static str| {
+        vec!["render", "plane.prt", "--probe", "builtin:sky", "-o", "a.png", option, value]
+    };
+    for (arguments, word) in [
+        (bake("--time", "-5"), "give a time above 0"),
+        (bake("--memory", "-1"), "such as 500M or 4G"),
+        (bake("--memory", "10%"), "such as 500M or 4G"),
+        (bake("--seed", "-1"), "give a whole number"),
+        (bake("--rays", "1k"), "give a whole number"),
+        (bake("--rays", "-5"), "give a whole number from 0 on"),
+        (bake("--refine", "-1"), "above 0"),
+        (bake("--threads", "-1"), "from 1 to 1024"),
+        (bake("--effects", "visiblity"), "did you mean visibility?"),
+        (bake("--effects", "all,none"), "interreflection"),
+        (draw("--size", "-5x5"), "960x540"),
+        (draw("--bloom", "50%"), "give a number"),
+        (draw("--frames", "0"), "above 0"),
+        (draw("--frames", "-1"), "give a whole number"),
+        (vec!["light", "builtin:sky:-10,0", "-o", "a.npy"], "1 to 90 degrees"),
+        (vec!["light", "builtin:sphere:0.5", "-o", "a.npy"], "from 1 on"),
+        (vec!["light", "builtin:sky 40,90", "-o", "a.npy"], "did you mean builtin:sky?"),
+        (vec!["light", "builtin-sky", "-o", "a.npy"], "did you mean builtin:sky?"),
+        (vec!["inspect", "builtin:plane"], "relume bake builtin:plane"),
+        (vec!["plan", ""], "empty"),
+    ] {
+        refuse(&[(&arguments, word)]);
+    }
+}
+
+/// What a file is shows in its bytes, whatever its name says.
+#[test]
+fn files_under_wrong_names_are_told() {
+    let folder = folder();
+    for (from, to) in [("plane.prt", "a.glb"), ("sky.hdr", "b.glb"), ("plane.prt", "c.hdr")] {
+        fs::copy(folder.path().join(from), folder.path().join(to)).unwrap();
+    }
+    for name in ["none.glb", "none.prt", "none.hdr"] {
+        fs::write(folder.path().join(name), "").unwrap();
+    }
+    fs::write(folder.path().join("noend"), SCENE).unwrap();
+    for (arguments, word) in [
+        (["plan", "a.glb"], "relume render"),
+        (["plan", "b.glb"], "--probe"),
+        (["plan", "none.glb"], "is empty"),
+        (["inspect", "none.prt"], "is empty"),
+        (["plan", "noend"], "without an ending"),
+    ] {
+        let text = complaint(&relume(folder.path(), &arguments));
+        assert!(text.contains(word), "{arguments:?} says nothing of {word}: {text}");
+    }
+    for (name, word) in [("c.hdr", "a baked file"), ("none.hdr", "is empty")] {
+        let text = complaint(&relume(folder.path(), &["light", name, "-o", "a.npy"]));
+        assert!(text.contains(word), "{name} says nothing of {word}: {text}");
+    }
+}
+
+/// Tables are no wider than the terminal, at any width.
+#[test]
+fn tables_fit_the_terminal() {
+    let folder = folder();
+    for columns in [40, 60, 80, 200] {
+        for arguments in
+            [&["list"][..], &["inspect", "plane.prt"], &["plan", "builtin:cornell-box"], &["uv", "builtin:teacup"]]
+        {
+            let output =
+                command::command(folder.path(), arguments).env("COLUMNS", columns.to_string()).output().unwrap();
+            let text = String::from_utf8_lossy(&output.stdout).into_owned();
+            let widest = text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+            assert!(widest <= columns && widest > 0, "{arguments:?}: {widest} of {columns}:\n{text}");
+        }
+    }
+    let output = command::command(folder.path(), &["list"]).env("COLUMNS", "200").output().unwrap();
+    let widest = String::from_utf8_lossy(&output.stdout).lines().map(|line| line.chars().count()).max();
+    assert!(widest > Some(100), "can fail: wide terminals are used");
+}
+
 #[cfg(unix)]
 #[test]
 fn a_folder_that_takes_no_file_is_told_beforehand() {
