@@ -10,6 +10,10 @@ use sh_math::{Bands, Rgb, lobe};
 
 /// How fast the bands take over from the prefiltered light as a lobe closes: from a quarter on they count in full.
 const SHARPNESS: f32 = 4.0;
+/// How far below the surface the light is read that the part of a lobe below it holds: the sine, and its growth with alpha.
+const DIP: [f32; 2] = [0.15, 1.5];
+/// What lies below is taken to be at most so many times as bright as the whole lobe.
+const BRIGHTEST_BELOW: f32 = 4.0;
 
 /// The lobe of a frame, and the light that its tail is taken against.
 #[derive(Debug)]
@@ -111,7 +115,7 @@ impl Gloss {
         rgb.extend((raw.w / aimed.energy).clamp(0.0, 1.0))
     }
 
-    /// What the bands hold of the light that nothing blocks.
+    /// What the bands hold of the whole light, above the surface and below.
     fn held(&self, aimed: &Aimed) -> Vec3 {
         aimed.weights.iter().zip(&self.light).map(|(&a, &l)| Vec3::from(l) * a).sum()
     }
@@ -168,9 +172,10 @@ impl Gloss {
         if !self.view.tail {
             return received.truncate();
         }
-        let (open, reflected) = (received.w, light.along(ray.mirrored, ray.roughness));
+        let [reflected, below] = light.above(ray.mirrored, ray.smooth, ray.roughness);
+        let (open, held) = (received.w, (self.held(&aimed) - (1.0 - aimed.energy) * below) / aimed.energy);
         let kept = (SHARPNESS * (1.0 - open)).min(1.0);
-        let beyond = received.truncate() - open * self.held(&aimed);
+        let beyond = received.truncate() - open * held;
         // What surfaces send counts in full; no more than they can be thought to send, lest bands ring about lamps.
         let sent = beyond.clamp(Vec3::ZERO, ray.scattered * (1.0 - open));
         (open * reflected + kept * beyond + (1.0 - kept) * sent).max(Vec3::ZERO)
@@ -200,6 +205,18 @@ impl Reflected<'_> {
     /// The blurred probe along a unit direction of the world.
     pub(crate) fn along(&self, mirrored: Vec3, roughness: f32) -> Vec3 {
         Vec3::from(self.reflection.sample(self.light_from_world * mirrored, roughness))
+    }
+
+    /// The blurred probe along a unit direction of the world, of what lies above a surface of unit normal `smooth`; and of what lies below
+    /// it, where the lobe dips in.
+    pub(crate) fn above(&self, mirrored: Vec3, smooth: Vec3, roughness: f32) -> [Vec3; 2] {
+        let cosine = smooth.dot(mirrored);
+        let share = lobe::above(roughness, cosine);
+        let whole = self.along(mirrored, roughness);
+        let deep = mirrored - smooth * (cosine + DIP[0] + DIP[1] * roughness * roughness);
+        // A lamp below must not put out what a lobe that hardly dips sees above.
+        let below = self.along(deep.normalize(), roughness).min(BRIGHTEST_BELOW * whole);
+        [((whole - (1.0 - share) * below) / share).max(Vec3::ZERO), below]
     }
 }
 

@@ -209,7 +209,10 @@ impl Shader<'_> {
                 let ray = Ray { mirrored, smooth: self.smooth(place), roughness, scattered: finish.scattered };
                 (gloss.mirrored(&ray, &light, arrived), roughness)
             }
-            _ => (light.along(mirrored, finish.roughness) * self.occlusion(place), finish.roughness),
+            _ => {
+                let [above, _] = light.above(mirrored, self.smooth(place), finish.roughness);
+                (above * self.occlusion(place), finish.roughness)
+            }
         };
         let cosine = cosine.abs().min(1.0);
         (radiance * reflectance(finish.color, finish.metallic, roughness, cosine), 1.0 - diffuse_loss(cosine))

@@ -12,7 +12,8 @@ use handmade::wall;
 use probe_io::Environment;
 use probe_io::reflection::Reflection;
 use render_cpu::{Error, Frame, REFLECTION_LEVELS, REFLECTION_WIDTH, Renderer, render};
-use sh_math::{Bands, Rgb, lobe::Lobe};
+use sh_math::lobe::{self, Lobe};
+use sh_math::{Bands, Rgb};
 use testkit::quadrature::{band_quadrature, sphere_quadrature};
 
 fn sky() -> Environment {
@@ -95,6 +96,15 @@ fn kept(factors: &[f64], axis: DVec3, direction: DVec3) -> f64 {
     terms.map(|(l, (b, p))| (2 * l + 1) as f64 / (4.0 * std::f64::consts::PI) * b * p).sum()
 }
 
+/// The prefiltered light above the wall, which faces +z, and what is read below it.
+fn above(reflection: &Reflection, turn: Quat, mirrored: Vec3, roughness: f32) -> [[f32; 3]; 2] {
+    let share = lobe::above(roughness, mirrored.z);
+    let deep = mirrored.truncate().extend(-0.15 - 1.5 * roughness * roughness).normalize();
+    let [whole, below] = [mirrored, deep].map(|d| reflection.sample(turn * d, roughness));
+    let below = [0, 1, 2].map(|c| below[c].min(4.0 * whole[c]));
+    [[0, 1, 2].map(|c| ((whole[c] - (1.0 - share) * below[c]) / share).max(0.0)), below]
+}
+
 /// What a pixel must mirror: integrals of light, visibility and lobe as functions of the direction.
 fn integral(
     lobe: Lobe,
@@ -134,13 +144,13 @@ fn integral(
         let weight = weight * direction[2] / std::f64::consts::PI;
         lit.iter_mut().zip(two.reconstruct(source)).for_each(|(sum, x)| *sum += weight * f64::from(x));
     }
-    let blurred = tail.map(|tail| tail.sample(turn.inverse() * mirrored.as_vec3(), roughness));
+    let blurred = tail.map(|tail| above(tail, turn.inverse(), mirrored.as_vec3(), roughness));
     let share = share(roughness, pixel, SIZE);
     std::array::from_fn(|c| {
         let (visible, bands) = ((open / energy).clamp(0.0, 1.0), (both[c] / energy).max(0.0));
-        let light = blurred.map_or(bands, |blurred| {
+        let light = blurred.map_or(bands, |[blurred, below]| {
             let closing = (4.0 * (1.0 - visible)).min(1.0);
-            let beyond = bands - visible * held[c];
+            let beyond = bands - visible * (held[c] - (1.0 - energy) * f64::from(below[c])) / energy;
             let sent = beyond.min((1.0 - visible) * lit[c].max(0.0)).max(0.0);
             (visible * f64::from(blurred[c]) + closing * beyond + (1.0 - closing) * sent).max(0.0)
         });
@@ -162,7 +172,7 @@ fn an_open_lobe_mirrors_the_prefiltered_light() {
         let picture = renderer.draw(&frame).expect("a picture").linear;
         let of_pixel = |pixel: usize| {
             let view = to_eye(pixel, SIZE).as_vec3();
-            let blurred = reflection.sample(Vec3::new(-view.x, -view.y, view.z), 0.375);
+            let [blurred, _] = above(&reflection, Quat::IDENTITY, Vec3::new(-view.x, -view.y, view.z), 0.375);
             let exact = blurred[0] * share(0.375, pixel, SIZE)[0];
             (picture[pixel][0] / exact - 1.0).abs()
         };

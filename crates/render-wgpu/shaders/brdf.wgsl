@@ -21,6 +21,15 @@ fn environment_brdf(roughness: f32, cosine: f32) -> vec2<f32> {
     return vec2<f32>(saturate(dot(shadow, white * grazing) - bias), bias);
 }
 
+// Share of a lobe that lies above a surface of whose normal its direction has the cosine.
+fn lobe_above(roughness: f32, cosine: f32) -> f32 {
+    let x = saturate(cosine);
+    let alpha = roughness * roughness;
+    let slopes = (1.0 - alpha) * (1.0 + 2.6 * alpha);
+    let width = 4.0 * alpha * alpha;
+    return 0.5 + 0.5 * x * sqrt((slopes + width) / max(slopes * x * x + width, 1e-12));
+}
+
 // Share of diffuse light that the mirror of a dielectric takes.
 fn diffuse_loss(cosine: f32) -> f32 {
     let x = cosine;

@@ -43,7 +43,14 @@ fn mirrored_sums(sums: vec4<f32>, energy: f32) -> vec4<f32> {
 
 // What is mirrored, of the sums of a lobe: where it is all open that is the prefiltered light, of which the bands know less; the more it closes the more
 // the bands count, and of the prefiltered light what they lack.
-fn mirrored_light(sums: vec4<f32>, lobe: Lobe, mirrored: vec3<f32>, roughness: f32, lit: vec3<f32>) -> vec3<f32> {
+fn mirrored_light(
+    sums: vec4<f32>,
+    lobe: Lobe,
+    mirrored: vec3<f32>,
+    plain: vec3<f32>,
+    roughness: f32,
+    lit: vec3<f32>,
+) -> vec3<f32> {
     if gloss_frame.tail == 0.0 {
         return sums.rgb;
     }
@@ -52,12 +59,13 @@ fn mirrored_light(sums: vec4<f32>, lobe: Lobe, mirrored: vec3<f32>, roughness: f
     for (var k = 0u; k < COUNT; k++) {
         held += values[k] * gloss_light[k].rgb;
     }
-    let whole = reflected(normalize(view.light_from_world * mirrored), roughness);
+    let whole = reflected_above(mirrored, plain, roughness);
+    held = (held - (1.0 - lobe.energy) * whole.below) / lobe.energy;
     let part = min(4.0 * (1.0 - sums.a), 1.0);
     let beyond = sums.rgb - sums.a * held;
     // What surfaces send counts in full; no more than they can be thought to send, lest bands ring about lamps.
     let sent = clamp(beyond, vec3<f32>(0.0), lit * (1.0 - sums.a));
-    return max(sums.a * whole + part * beyond + (1.0 - part) * sent, vec3<f32>(0.0));
+    return max(sums.a * whole.light + part * beyond + (1.0 - part) * sent, vec3<f32>(0.0));
 }
 
 fn gloss_roughness(own: f32) -> f32 {

@@ -27,6 +27,6 @@ fn specular_light(
     let mirrored = normalize(2.0 * cosine * normal - to_eye);
     let lobe = lobe_about(mirrored, plain, own.roughness);
     let sums = mirrored_sums(arriving(lobe, at.uv.zw, detail()), lobe.energy);
-    let light = mirrored_light(sums, lobe, mirrored, own.roughness, lit);
+    let light = mirrored_light(sums, lobe, mirrored, plain, own.roughness, lit);
     return light * returned(own, cosine);
 }

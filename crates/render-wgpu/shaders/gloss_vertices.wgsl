@@ -75,7 +75,7 @@ fn draw_glossy(at: Glossy) -> @location(0) vec4<f32> {
     let lobe = lobe_about(mirrored, plain, own.roughness);
     let diffuse = bent_light(diffuse_light(at.lit.rgb, at.uv), at.heading, plain, normal);
     let lit = max(diffuse, vec3<f32>(0.0));
-    let light = mirrored_light(at.gloss, lobe, mirrored, own.roughness, lit);
+    let light = mirrored_light(at.gloss, lobe, mirrored, plain, own.roughness, lit);
     return composite(point, lit * kept_light(cosine), light * returned(own, cosine), glow(at.uv));
 }
 

@@ -9,7 +9,7 @@ fn specular_light(
     lit: vec3<f32>,
 ) -> vec3<f32> {
     let cosine = dot(normal, to_eye);
-    let direction = view.light_from_world * (2.0 * cosine * normal - to_eye);
-    let light = reflected(normalize(direction), point.roughness) * saturate(at.lit.w);
+    let mirrored = normalize(2.0 * cosine * normal - to_eye);
+    let light = reflected_above(mirrored, plain, point.roughness).light * saturate(at.lit.w);
     return light * returned(point, cosine);
 }

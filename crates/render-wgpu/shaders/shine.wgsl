@@ -43,6 +43,24 @@ fn reflected(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
     return mix(reflection_level(taps, low), reflection_level(taps, high), level - f32(low));
 }
 
+struct Reflected {
+    // Of what lies above the surface.
+    light: vec3<f32>,
+    // Of what lies below it, where the lobe dips in.
+    below: vec3<f32>,
+}
+
+// Light of the probe around a unit direction (world), above a surface of unit normal `plain`.
+fn reflected_above(mirrored: vec3<f32>, plain: vec3<f32>, roughness: f32) -> Reflected {
+    let cosine = dot(plain, mirrored);
+    let share = lobe_above(roughness, cosine);
+    let whole = reflected(normalize(view.light_from_world * mirrored), roughness);
+    let deep = mirrored - plain * (cosine + 0.15 + 1.5 * roughness * roughness);
+    // A lamp below must not put out what a lobe that hardly dips sees above.
+    let below = min(reflected(normalize(view.light_from_world * deep), roughness), 4.0 * whole);
+    return Reflected(max((whole - (1.0 - share) * below) / share, vec3<f32>(0.0)), below);
+}
+
 fn reflection_level(taps: Taps, level: i32) -> vec3<f32> {
     let a = textureLoad(reflection, taps.upper.xz, level, 0).rgb;
     let b = textureLoad(reflection, taps.upper.yz, level, 0).rgb;

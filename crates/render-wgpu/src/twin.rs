@@ -158,10 +158,10 @@ fn roughness_and_cosine() -> Vec<[f32; 4]> {
 #[test]
 fn environment_brdf_is_its_twin() {
     let Some(gpu) = gpu() else { return };
-    let call = "vec4<f32>(environment_brdf(x.x, x.y), diffuse_loss(x.y), 0.0)";
+    let call = "vec4<f32>(environment_brdf(x.x, x.y), diffuse_loss(x.y), lobe_above(x.x, x.y))";
     let exact = |x: [f32; 4]| {
         let [scale, bias] = sh_math::brdf::environment_brdf(x[0], x[1]);
-        [scale, bias, sh_math::brdf::diffuse_loss(x[1])].map(f64::from)
+        [scale, bias, sh_math::brdf::diffuse_loss(x[1]), sh_math::lobe::above(x[0], x[1])].map(f64::from)
     };
     let error = worst(&gpu, FUNCTIONS, call, None, &roughness_and_cosine(), exact);
     assert!(error < FIT_TOLERANCE, "off by {error}");

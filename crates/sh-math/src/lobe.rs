@@ -104,6 +104,18 @@ pub fn open_energy(factors: &[f32], cosine: f32) -> f32 {
     terms.map(|((b, p), c)| f64::from(*b) * p * c).sum::<f64>() as f32
 }
 
+/// Share of a whole lobe of [`Lobe::Ggx`] that lies above a surface of whose normal its direction has the `cosine`: within 0.0065 of the integral.
+///
+/// `(1 + x sqrt((q + 4 a^2) / (q x^2 + 4 a^2))) / 2`, `a = roughness^2`, `q = (1 - a) (1 + 2.6 a)`: the share of a plane of slopes, which narrow
+/// lobes have, and `(1 + x) / 2` of the widest. A cosine below 0 counts as 0: half.
+#[must_use]
+pub fn above(roughness: f32, cosine: f32) -> f32 {
+    let x = cosine.clamp(0.0, 1.0);
+    let alpha = roughness * roughness;
+    let (slopes, width) = ((1.0 - alpha) * (1.0 + 2.6 * alpha), 4.0 * alpha * alpha);
+    0.5 + 0.5 * x * ((slopes + width) / (slopes * x * x + width).max(1e-12)).sqrt()
+}
+
 /// The Legendre coefficients of the hemisphere, `(2 l + 1) / 2 int_0^1 P_l`: 1/2, 3/4, 0, -7/16, ...
 #[must_use]
 pub fn hemisphere(count: usize) -> Vec<f64> {
@@ -203,6 +215,35 @@ mod tests {
         }
         let wrong = Lobe::Ggx.factors(0.5, 3)[2] - by_angle(Lobe::Ggx, 0.55, 2);
         assert!(wrong.abs() > 1e-3, "another roughness must show: {wrong}");
+    }
+
+    /// The lobe's part above a plane, by a sum over angles from its direction and about it.
+    fn part_above(roughness: f64, cosine: f64) -> f64 {
+        let sine = (1.0 - cosine * cosine).sqrt();
+        let a = roughness.powi(4);
+        let (mut sum, mut one) = (0.0, 0.0);
+        let steps = 40_000;
+        for k in 0..steps {
+            let t = 0.5 * PI * (k as f64 + 0.5) / steps as f64;
+            let half = (0.5 * t).cos().powi(2);
+            let weight = t.cos() * t.sin() / (half * (a - 1.0) + 1.0).powi(2);
+            let turned = (-cosine * t.cos() / (sine * t.sin()).max(1e-300)).clamp(-1.0, 1.0);
+            one += weight;
+            sum += weight * turned.acos() / PI;
+        }
+        sum / one
+    }
+
+    #[test]
+    fn the_share_above_is_that_of_the_lobe() {
+        for roughness in [0.1, 0.3, 0.5, 0.8, 1.0] {
+            for cosine in [0.0, 0.02, 0.1, 0.3, 0.6, 1.0] {
+                let (fit, exact) = (f64::from(above(roughness as f32, cosine as f32)), part_above(roughness, cosine));
+                assert!((fit - exact).abs() < 7e-3, "{roughness} {cosine}: {fit} {exact}");
+            }
+        }
+        assert!((f64::from(above(0.5, 0.3)) - part_above(0.6, 0.3)).abs() > 0.02, "can fail: another roughness");
+        assert_eq!([above(0.0, 1e-3), above(0.0, 0.0), above(0.4, -1.0)], [1.0, 0.5, 0.5]);
     }
 
     /// \[T\] shows 5 bands with several exponents: they keep 99 % of the energy at 5, 91 at 10, 70 at 20, 39 at 50 and 22 at 100.
