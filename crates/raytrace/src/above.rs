@@ -45,7 +45,7 @@ impl Tracer {
     fn find(&self, half: &Half) -> (bool, usize) {
         let tree = &self.tree;
         let mut open = if tree.nodes.is_empty() { vec![] } else { vec![Child::node(0)] };
-        let mut flats = self.flats.get();
+        let mut flats = self.tree.flats.get();
         let mut steps = 0;
         while let Some(child) = open.pop() {
             steps += 1;
@@ -66,10 +66,10 @@ impl Tracer {
         (false, steps)
     }
 
-    /// Notes that a stretch of steps gave no answer; how flat the tree is, once that is worth knowing. Answers do not depend on it.
+    /// Notes that some steps gave no answer; how flat the tree is, once that is worth knowing. Answers do not depend on it.
     fn flats_if_worth(&self) -> Option<&Flats> {
         let spent = self.spent.fetch_add(STRETCH, Ordering::Relaxed) + STRETCH;
-        (spent > WORTH * self.tree.blocks.len()).then(|| self.flats.get_or_init(|| Flats::of(&self.tree)))
+        (spent > WORTH * self.tree.blocks.len()).then(|| self.tree.flats())
     }
 }
 

@@ -29,7 +29,6 @@ impl Job for ClosestFan<'_> {
     fn run<P: Path>(self) {
         let ClosestFan { tree, directions, wanted, solid, state, hits } = self;
         let FanState { scratch, group } = state;
-        scratch.start(tree, directions.origin);
         let mut places = (0..hits.len()).filter(|i| wanted[i / 64] >> (i % 64) & 1 == 1);
         loop {
             group.gather::<P::Rays>(&directions, &mut places);

@@ -26,6 +26,11 @@ impl FanState {
     pub fn new() -> FanState {
         FanState { scratch: Scratch::new(), group: Group::new() }
     }
+
+    /// Nodes that all fans so far opened, and blocks that they looked at: what their answers cost, without a clock.
+    pub fn steps(&self) -> usize {
+        self.scratch.sights.looks + self.scratch.sights.under.visits
+    }
 }
 
 impl Default for FanState {
@@ -60,6 +65,7 @@ impl Tracer {
             return;
         }
         let directions = Directions { origin, each: [xs, ys, zs] };
+        state.scratch.start(self, &directions);
         dispatch(self.level, OccludedFan { tree: &self.tree, directions, solid, state, blocked });
     }
 
@@ -88,6 +94,7 @@ impl Tracer {
             return;
         }
         let directions = Directions { origin, each: [xs, ys, zs] };
+        state.scratch.start(self, &directions);
         dispatch(self.level, ClosestFan { tree: &self.tree, directions, wanted, solid, state, hits });
     }
 
@@ -113,7 +120,6 @@ impl Job for OccludedFan<'_> {
     fn run<P: Path>(self) {
         let OccludedFan { tree, directions, solid, state, blocked } = self;
         let FanState { scratch, group } = state;
-        scratch.start(tree, directions.origin);
         for first in (0..directions.len()).step_by(P::Rays::N) {
             group.fill::<P::Rays>(&directions, first);
             let stopped = match Packet::<P::Rays>::of(tree, directions.origin, &group.directions) {

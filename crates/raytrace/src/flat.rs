@@ -13,18 +13,24 @@ const ROUNDING: f64 = 1e-12;
 /// Rounding of coordinates by which corners may lie off a plane that they were meant for, over the largest coordinate.
 const STEP: f64 = 1.0 / 2_097_152.0;
 
+/// Bound on the rounding of a corner translated to an origin in single precision, over its distance along each axis.
+const TRANSLATION: f64 = 1.01 / 16_777_216.0;
+
 /// Rounding and length of normals in the comparison of a cone with a direction.
 const CONE_SLACK: f64 = 1e-4;
 
 /// What is known of every node of a tree.
 #[derive(Debug)]
 pub(crate) struct Flats {
-    /// None where it was not worth while.
     flats: Vec<Option<Flat>>,
 }
 
-/// Blocks that are looked at for each block that there is: twice the levels of a large tree in balance, few of a chain.
+/// Blocks that are looked at for each block that there is: twice the levels of a large tree in balance, few of a chain, as slivers
+/// around a corner make it. What is larger is known by its parts.
 const MOST_LOOKS: usize = 24;
+
+/// Cosine from which on two planes may be one.
+const NEARLY_ONE: f32 = 0.9999;
 
 /// Planes that are taken of a node, about at right angles at best: ground, and the walls that stand on it.
 const PLANES: usize = 3;
@@ -62,10 +68,17 @@ impl Flats {
         let mut looked = 0;
         for node in nodes {
             looked += ranges[node].len();
-            if looked > MOST_LOOKS * order.len() {
-                break;
+            flats[node] = if looked <= MOST_LOOKS * order.len() {
+                Some(Flat::of(tree, &order[ranges[node].clone()]))
+            } else {
+                // The smaller parts come first: they are known.
+                Flat::around(tree, node, &flats)
+            };
+        }
+        if !order.is_empty() {
+            for slab in Flat::of(tree, &order).slabs {
+                share(tree, &slab, &mut flats);
             }
-            flats[node] = Some(Flat::of(tree, &order[ranges[node].clone()]));
         }
         Flats { flats }
     }
@@ -76,8 +89,29 @@ impl Flats {
             return true;
         };
         let least = half.least_in((flat.lower, flat.upper));
-        let reaches = |slab: &Slab| flat.highest(slab, half) > least;
+        let reaches = |slab: &Slab| flat.highest(slab, (half.from, half.normal)) > least;
         flat.slabs.iter().all(reaches) && !(half.is_faced() && flat.faces_along(half.normal))
+    }
+}
+
+impl Flats {
+    /// A direction along which all corners below a node lie below an origin, beyond the rounding of their translation to it.
+    pub(crate) fn plane_below(&self, node: usize, origin: Vec3) -> Option<Vec3> {
+        let flat = self.flats[node].as_ref()?;
+        let from = origin.as_dvec3();
+        let [lower, upper] = [flat.lower, flat.upper].map(|corner| (corner.as_dvec3() - from).abs());
+        let (away, size) = (lower.max(upper), f64::from(flat.lower.abs().max(flat.upper.abs()).max_element()));
+        flat.slabs.iter().find_map(|slab| {
+            let normal = slab.normal.as_dvec3();
+            let height = normal.dot(from - slab.from.as_dvec3());
+            let rounding = TRANSLATION * normal.abs().dot(away) + ROUNDING * size.max(from.abs().max_element());
+            let is_above = |above: f64| above > rounding;
+            match (is_above(height - f64::from(slab.high)), is_above(f64::from(slab.low) - height)) {
+                (true, _) => Some(slab.normal),
+                (_, true) => Some(-slab.normal),
+                _ => None,
+            }
+        })
     }
 }
 
@@ -98,16 +132,40 @@ impl Flat {
         Flat { lower, upper, slabs, axis: axis.as_vec3(), cosine: cosine as f32 }
     }
 
-    /// Bound on the height of the corners: by a slab along its normal, by the box across.
-    fn highest(&self, slab: &Slab, half: &Half) -> f64 {
+    /// About the children of a node, by what is known of them: bounds that are not the least.
+    fn around(tree: &Tree, node: usize, flats: &[Option<Flat>]) -> Option<Flat> {
+        let children = tree.nodes[node].children.iter().filter(|&&child| child != Child::NONE);
+        let part = |child: &Child| match child.as_block() {
+            Some(block) => Some(Flat::of(tree, &[block as u32])),
+            None => flats[child.index()],
+        };
+        let mut parts = children.map(part).collect::<Option<Vec<Flat>>>()?;
+        let size = |flat: &Flat| (flat.upper - flat.lower).length_squared();
+        parts.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        let bounds = parts.iter().map(|part| (part.lower, part.upper));
+        let (lower, upper) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let mut slabs = [Slab::default(); PLANES];
+        let mut count = 0;
+        for slab in parts.iter().flat_map(|part| part.slabs) {
+            let is_new = slabs[..count].iter().all(|taken| f64::from(taken.normal.dot(slab.normal).abs()) <= ALIKE);
+            if count < PLANES && is_new {
+                slabs[count] = slab.around(&parts);
+                count += 1;
+            }
+        }
+        Some(Flat { lower, upper, slabs, axis: Vec3::ZERO, cosine: -1.0 })
+    }
+
+    /// Bound on the height of the corners above a point: by a slab along its normal, by the box across.
+    fn highest(&self, slab: &Slab, (above, direction): (DVec3, DVec3)) -> f64 {
         let (normal, from) = (slab.normal.as_dvec3(), slab.from.as_dvec3());
-        // half.normal = along * normal + across holds for any split.
-        let along = half.normal.dot(normal);
-        let across = half.normal - along * normal;
+        // direction = along * normal + across holds for any split.
+        let along = direction.dot(normal);
+        let across = direction - along * normal;
         let sides = (across * (self.lower.as_dvec3() - from)).max(across * (self.upper.as_dvec3() - from));
         let thick = f64::max(along * f64::from(slab.low), along * f64::from(slab.high));
-        let size = f64::from(self.lower.abs().max(self.upper.abs()).max_element()).max(half.from.abs().max_element());
-        half.normal.dot(from - half.from) + thick + sides.element_sum() + ROUNDING * size
+        let size = f64::from(self.lower.abs().max(self.upper.abs()).max_element()).max(above.abs().max_element());
+        direction.dot(from - above) + thick + sides.element_sum() + ROUNDING * size
     }
 
     /// Whether all triangles surely face along a direction rather than against it.
@@ -134,6 +192,52 @@ impl Slab {
         let heights = triangles(tree, blocks).flatten().map(|p| normal.as_dvec3().dot(p.as_dvec3() - from.as_dvec3()));
         let (low, high) = heights.fold((0.0, 0.0), |(low, high), h| (f64::min(low, h), f64::max(high, h)));
         Slab { from, normal, low: (low as f32).next_down(), high: (high as f32).next_up() }
+    }
+
+    fn thickness(&self) -> f64 {
+        f64::from(self.high) - f64::from(self.low)
+    }
+}
+
+impl Slab {
+    /// About the same plane, around all parts.
+    fn around(self, parts: &[Flat]) -> Slab {
+        let (from, normal) = (self.from.as_dvec3(), self.normal.as_dvec3());
+        let bound = |direction: DVec3| {
+            let least = |part: &Flat| {
+                part.slabs.iter().map(|slab| part.highest(slab, (from, direction))).fold(f64::INFINITY, f64::min)
+            };
+            parts.iter().map(least).fold(0.0, f64::max)
+        };
+        Slab { low: (-bound(-normal) as f32).next_down(), high: (bound(normal) as f32).next_up(), ..self }
+    }
+}
+
+/// Gives a plane to all parts of a tree that lie in it: a sliver alone tells badly how its plane leans.
+fn share(tree: &Tree, plane: &Slab, flats: &mut [Option<Flat>]) {
+    let (from, normal) = (plane.from.as_dvec3(), plane.normal.as_dvec3());
+    let mut ends = vec![(0.0, 0.0); flats.len()];
+    // Children stand after their parents.
+    for node in (0..flats.len()).rev() {
+        let children = tree.nodes[node].children.iter().filter(|&&child| child != Child::NONE);
+        let around = |(low, high): (f64, f64), child: &Child| match child.as_block() {
+            Some(block) => {
+                let one = [block as u32];
+                let heights = triangles(tree, &one).flatten().map(|p| normal.dot(p.as_dvec3() - from));
+                heights.fold((low, high), |(low, high), h| (low.min(h), high.max(h)))
+            }
+            None => (low.min(ends[child.index()].0), high.max(ends[child.index()].1)),
+        };
+        let (low, high) = children.fold((0.0, 0.0), around);
+        ends[node] = (low, high);
+        let Some(flat) = &mut flats[node] else { continue };
+        let size = f64::from(flat.lower.abs().max(flat.upper.abs()).max_element());
+        let alike = |slab: &&mut Slab| slab.normal.dot(plane.normal).abs() > NEARLY_ONE;
+        if let Some(slab) = flat.slabs.iter_mut().find(alike)
+            && high - low <= slab.thickness() + 4.0 * STEP * size
+        {
+            *slab = Slab { low: (low as f32).next_down(), high: (high as f32).next_up(), ..*plane };
+        }
     }
 }
 

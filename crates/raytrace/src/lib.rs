@@ -35,6 +35,7 @@ mod search;
 mod sight;
 mod tracer;
 mod tree;
+mod under;
 mod validate;
 mod walk;
 #[cfg(target_arch = "x86_64")]

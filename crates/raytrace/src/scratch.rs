@@ -1,9 +1,10 @@
 //! What a thread keeps between the fans it traces, so that nothing is allocated for each.
 
 use crate::found::Found;
+use crate::group::Directions;
 use crate::meetings::Meetings;
 use crate::sight::{Occluders, Sights};
-use crate::tree::Tree;
+use crate::tracer::Tracer;
 use glam::Vec3;
 
 /// The working memory of a fan. It changes how fast answers come, never what they are.
@@ -45,7 +46,8 @@ impl Scratch {
     }
 
     /// Makes ready for a fan.
-    pub(crate) fn start(&mut self, tree: &Tree, origin: Vec3) {
+    pub(crate) fn start(&mut self, tracer: &Tracer, directions: &Directions<'_>) {
+        let (tree, origin) = (&tracer.tree, directions.origin);
         let same_tree = self.serial == tree.serial;
         if !same_tree {
             self.serial = tree.serial;
@@ -55,6 +57,8 @@ impl Scratch {
         let bits = |p: Vec3| p.to_array().map(f32::to_bits);
         if !same_tree || bits(self.sights.origin) != bits(origin) {
             self.sights.start(origin);
+            self.sights.under.find(tracer, origin);
         }
+        self.sights.under.start(directions);
     }
 }

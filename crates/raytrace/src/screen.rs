@@ -34,7 +34,7 @@ impl<R: Lanes> Screen<'_, R> {
                 open &= !self.one_by_one::<P>(child, mask, scratch);
             } else if let Some(index) = child.as_block() {
                 open &= !self.try_block::<P>(index, mask, scratch);
-            } else {
+            } else if !scratch.sights.under.holds(self.tree, child.index()) {
                 self.descend::<P>(&self.tree.nodes[child.index()], mask, &mut scratch.waiting);
             }
             let Some(next) = scratch.waiting.pop() else {

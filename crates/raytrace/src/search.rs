@@ -47,7 +47,7 @@ impl<R: Lanes> Search<'_, R> {
                 self.one_by_one::<P>(child, rays, found, sights, stack);
             } else if let Some(index) = child.as_block() {
                 self.try_block::<P>(index, u32::MAX, rays, found, sights);
-            } else {
+            } else if !sights.under.holds(self.tree, child.index()) {
                 self.descend::<P>(&self.tree.nodes[child.index()], rays, found, waiting);
             }
             let Some(next) = waiting.pop() else {
@@ -172,7 +172,7 @@ impl<R: Lanes> Search<'_, R> {
         loop {
             if let Some(index) = child.as_block() {
                 self.try_block_alone::<P>(index, ray, &walker.line, found, sights);
-            } else {
+            } else if !sights.under.holds(self.tree, child.index()) {
                 push::<P>(self.tree, &self.tree.nodes[child.index()], &walker, found.far(ray), stack);
             }
             match pop(stack, base, found.far(ray)) {

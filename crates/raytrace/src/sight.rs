@@ -5,6 +5,7 @@ use crate::depth::Depths;
 use crate::lanes::Lanes;
 use crate::ray::Line;
 use crate::tree::Tree;
+use crate::under::Under;
 use crate::walk::View;
 use glam::Vec3;
 
@@ -18,12 +19,16 @@ pub(crate) struct Sights {
     depths: Memory<Depths>,
     fan: u64,
     pub(crate) origin: Vec3,
+    /// What lies under the fan.
+    pub(crate) under: Under,
+    /// Blocks that were looked at.
+    pub(crate) looks: usize,
 }
 
 impl Sights {
     pub(crate) fn new() -> Sights {
         let (edges, depths) = (Memory::new(Seen::NOTHING), Memory::new(Depths::NOTHING));
-        Sights { edges, depths, fan: 0, origin: Vec3::ZERO }
+        Sights { edges, depths, fan: 0, origin: Vec3::ZERO, under: Under::new(), looks: 0 }
     }
 
     /// Forgets everything: a new origin.
@@ -41,6 +46,7 @@ impl Sights {
     /// A block as the origin sees it.
     #[inline(always)]
     pub(crate) fn view<F: Lanes>(&mut self, tree: &Tree, block: usize) -> &Seen {
+        self.looks += 1;
         let (place, known) = self.edges.find(self.fan, block);
         if !known {
             self.edges.values[place] = see::<F>(&tree.blocks[block], self.origin);
@@ -88,6 +94,11 @@ impl View for Sights {
     #[inline(always)]
     fn test<F: Lanes>(&mut self, tree: &Tree, block: usize, line: &Line) -> (u32, u32) {
         candidates::<F>(self.view::<F>(tree, block), line.direction)
+    }
+
+    #[inline(always)]
+    fn is_under(&mut self, tree: &Tree, node: usize) -> bool {
+        self.under.holds(tree, node)
     }
 }
 

@@ -1,7 +1,6 @@
 //! The public face: triangles in, answers about rays out.
 
 use crate::build::build;
-use crate::flat::Flats;
 use crate::lanes::Path;
 use crate::level::{Job, Level, dispatch};
 use crate::nearest::nearest;
@@ -10,7 +9,6 @@ use crate::tree::{Child, Tree};
 use crate::walk::{Fresh, Solid, Walker, blocked};
 use glam::Vec3;
 use std::cell::Cell;
-use std::sync::OnceLock;
 use std::sync::atomic::AtomicUsize;
 
 thread_local! {
@@ -26,10 +24,10 @@ thread_local! {
 pub struct Tracer {
     pub(crate) tree: Tree,
     pub(crate) level: Level,
-    /// Made when a question about a plane first needs it.
-    pub(crate) flats: OnceLock<Flats>,
-    /// Steps that such questions took without it.
+    /// Steps that questions about planes took without knowing how flat the tree is.
     pub(crate) spent: AtomicUsize,
+    /// Boxes around origins of fans that had too many.
+    pub(crate) crowds: AtomicUsize,
 }
 
 impl Tracer {
@@ -41,8 +39,8 @@ impl Tracer {
         Tracer {
             tree: build(positions, triangles, masked),
             level: Level::best(),
-            flats: OnceLock::new(),
             spent: AtomicUsize::new(0),
+            crowds: AtomicUsize::new(0),
         }
     }
 

@@ -1,8 +1,10 @@
 //! The tree that rays walk: eight-wide nodes with boxes by structure of arrays, triangles in blocks of four.
 
+use crate::flat::Flats;
 use crate::lanes::Path;
 use crate::ray::LARGEST;
 use glam::Vec3;
+use std::sync::OnceLock;
 
 /// Width of a node.
 pub(crate) const WIDTH: usize = 8;
@@ -114,9 +116,16 @@ pub(crate) struct Tree {
     pub(crate) serial: u64,
     /// Largest coordinate of any corner, by amount.
     pub(crate) reach: f32,
+    /// How flat its parts are: made when a question first needs it.
+    pub(crate) flats: OnceLock<Flats>,
 }
 
 impl Tree {
+    /// How flat the parts of the tree are.
+    pub(crate) fn flats(&self) -> &Flats {
+        self.flats.get_or_init(|| Flats::of(self))
+    }
+
     /// Brings a child near that will be visited soon.
     #[inline(always)]
     pub(crate) fn fetch<P: Path>(&self, child: Child) {

@@ -49,7 +49,7 @@ pub(crate) struct Apart {
 impl Apart {
     #[inline(always)]
     pub(crate) fn new(tree: &Tree, origin: Vec3) -> Apart {
-        let widen = WIDEN * (tree.reach + origin.abs().max_element());
+        let widen = widening(tree, origin);
         Apart { from: [origin + widen, origin - widen] }
     }
 
@@ -60,6 +60,12 @@ impl Apart {
         let plane = |side: usize| E::load(&node.bounds[axis + 3 * side]).sub(E::splat(self.from[side][axis]));
         (plane(entry), plane(exit))
     }
+}
+
+/// How much wider boxes count, seen from an origin.
+#[inline(always)]
+pub(crate) fn widening(tree: &Tree, origin: Vec3) -> f32 {
+    WIDEN * (tree.reach + origin.abs().max_element())
 }
 
 /// One ray with what its box tests need.
@@ -101,6 +107,12 @@ impl Walker {
 pub(crate) trait View {
     /// Which triangles a line may meet, and which of those beyond doubt.
     fn test<F: Lanes>(&mut self, tree: &Tree, block: usize, line: &Line) -> (u32, u32);
+
+    /// Whether nothing below a node is met, as is known of the origin.
+    #[inline(always)]
+    fn is_under(&mut self, _tree: &Tree, _node: usize) -> bool {
+        false
+    }
 }
 
 /// Tests each block anew: for a ray that shares its origin with no other.
@@ -133,7 +145,7 @@ pub(crate) fn blocked<P: Path>(
                 stack.truncate(base);
                 return Some((index, lane));
             }
-        } else {
+        } else if !view.is_under(tree, child.index()) {
             let node = &tree.nodes[child.index()];
             let (mask, _) = walker.boxes::<P::Eight>(node, walker.end);
             push::<P>(tree, stack, node, mask, walker.octant);
