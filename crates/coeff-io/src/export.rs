@@ -24,7 +24,7 @@ use std::path::Path;
 /// # Errors
 /// `Io`.
 pub fn npy(prt: &Prt, folder: &Path) -> Result<(), Error> {
-    std::fs::create_dir_all(folder)?;
+    crate::make_folder(folder)?;
     let rows = prt.geometry.positions.len() as u64;
     let transfer = &prt.transfer;
     let (coefficients, channels) = (u64::from(transfer.bands).pow(2), u64::from(transfer.channels));

@@ -17,7 +17,7 @@ use std::path::Path;
 /// # Errors
 /// `Unsupported` where a sheet is larger than graphics hardware reads, `Io`.
 pub fn maps(maps: &Maps, container: Container, folder: &Path) -> Result<(), Error> {
-    std::fs::create_dir_all(folder)?;
+    crate::make_folder(folder)?;
     let mut sheets = Vec::new();
     for (i, Sheet { layers }) in maps.sheets.iter().enumerate() {
         let file = format!("sheet_{i}.{}", container.extension());
@@ -84,7 +84,7 @@ fn half(value: f32) -> [u8; 2] {
 /// `Unsupported` where the grid is larger than graphics hardware reads, `Io`.
 pub fn volume(volume: &Volume, light: &[[f32; 3]], container: Container, folder: &Path) -> Result<(), Error> {
     let grid = volume.grid(light)?;
-    std::fs::create_dir_all(folder)?;
+    crate::make_folder(folder)?;
     let files = std::array::from_fn(|k| format!("volume_{k}.{}", container.extension()));
     for (file, function) in files.iter().zip(&grid.functions) {
         let bytes = function.iter().flat_map(|[r, g, b]| [*r, *g, *b, 1.0]).flat_map(half).collect();

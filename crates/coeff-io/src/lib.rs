@@ -74,7 +74,7 @@ pub use plan::{Effect, EffectCost, MeshPlan, Plan, PlanRow, Survey};
 pub use record::{
     Achieved, BandChoice, Bounces, Effects, GlossRecord, MapRecord, Quality, Refine, RepairCounts, Sampler, Settings,
 };
-pub use replace::{abandon, replace};
+pub use replace::{abandon, make_folder, replace};
 pub use rows::{Codebook, Form, Table};
 pub use supplement::Supplement;
 pub use table::{ALIGNMENT, Chunk, Kind, MAGIC, VERSION};

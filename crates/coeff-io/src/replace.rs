@@ -7,8 +7,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::NamedTempFile;
 
-/// Files that are being filled; none once all was abandoned.
-static MAKING: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(Some(BTreeSet::new()));
+/// Files that are being filled, and folders that were made for files; none once all was abandoned.
+static MAKING: Mutex<Option<Unfinished>> = Mutex::new(Some(Unfinished { parts: BTreeSet::new(), folders: Vec::new() }));
+
+struct Unfinished {
+    parts: BTreeSet<PathBuf>,
+    /// From the outer to the inner ones.
+    folders: Vec<PathBuf>,
+}
 
 /// Writes a file beside `path` and renames it to `path` when `fill` has succeeded and the bytes are on the disk.
 ///
@@ -34,16 +40,30 @@ pub fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Resu
     sync_folder(folder)
 }
 
-/// Removes what is being written, and lets no further file come to be: for a program that is about to end. Files that are there
-/// stay as they are.
-pub fn abandon() {
-    for part in making().take().into_iter().flatten() {
-        // What is left beside a file is no reason to stay.
-        let _ = std::fs::remove_file(part);
-    }
+/// Makes a folder for files, and those above it that are missing.
+///
+/// # Errors
+/// As the system reports.
+pub fn make_folder(folder: &Path) -> io::Result<()> {
+    let mut making = making();
+    let unfinished = making.as_mut().ok_or_else(abandoned)?;
+    let is_missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+    let missing: Vec<PathBuf> = folder.ancestors().take_while(is_missing).map(Path::to_owned).collect();
+    unfinished.folders.extend(missing.into_iter().rev());
+    std::fs::create_dir_all(folder)
 }
 
-fn making() -> MutexGuard<'static, Option<BTreeSet<PathBuf>>> {
+/// Removes what is being written and folders that were made and stayed empty, and lets no further file come to be: for a program that is
+/// about to end. Files that are there stay as they are.
+pub fn abandon() {
+    let Some(Unfinished { parts, folders }) = making().take() else { return };
+    // What is left beside a file is no reason to stay.
+    parts.iter().for_each(|part| drop(std::fs::remove_file(part)));
+    // The system removes no folder that holds anything.
+    folders.iter().rev().for_each(|folder| drop(std::fs::remove_dir(folder)));
+}
+
+fn making() -> MutexGuard<'static, Option<Unfinished>> {
     MAKING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -62,8 +82,8 @@ struct Part(PathBuf);
 
 impl Drop for Part {
     fn drop(&mut self) {
-        if let Some(parts) = making().as_mut() {
-            parts.remove(&self.0);
+        if let Some(unfinished) = making().as_mut() {
+            unfinished.parts.remove(&self.0);
         }
     }
 }
@@ -71,9 +91,9 @@ impl Drop for Part {
 impl Making {
     fn begin(folder: &Path) -> io::Result<Making> {
         let mut making = making();
-        let parts = making.as_mut().ok_or_else(abandoned)?;
+        let unfinished = making.as_mut().ok_or_else(abandoned)?;
         let file = builder().tempfile_in(folder)?;
-        parts.insert(file.path().to_owned());
+        unfinished.parts.insert(file.path().to_owned());
         let part = Part(file.path().to_owned());
         Ok(Making { file, part })
     }

@@ -74,7 +74,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         Format::Dds => textures(&prt, Container::Dds, options, console)?,
         Format::Json => {
             let volume = prt.volume.as_ref().with_context(|| lacks(&options.file, "no irradiance volume"))?;
-            std::fs::create_dir_all(folder).with_context(about)?;
+            coeff_io::make_folder(folder).with_context(about)?;
             export::volume_json(volume, &folder.join("volume.json")).with_context(about)?;
             format!("{} probes", volume.positions.len())
         }

@@ -61,6 +61,8 @@ fn main() -> ExitCode {
         // A reader that has seen enough, such as `head`, is no failure.
         Err(error) if console::is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
+            // Folders that were made for results that did not come.
+            coeff_io::abandon();
             console.error(&error);
             ExitCode::from(if error.is::<Usage>() { 2 } else { 1 })
         }

@@ -98,7 +98,7 @@ fn check_is_folder(folder: &Path) -> Result<()> {
 
 fn make_folder(folder: &Path) -> Result<()> {
     check_is_folder(folder)?;
-    fs::create_dir_all(folder)
+    coeff_io::make_folder(folder)
         .with_context(|| format!("cannot make the folder {}: choose another, or make room for it", folder.display()))
 }
 

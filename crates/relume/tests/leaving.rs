@@ -21,7 +21,7 @@ const STAGES: [(&[&str], &str); 4] = [
     (&["bake", "builtin:atrium", "-o", "a.prt", "--rays", "65536", "--bands", "8", "--refine", "off"], "visibility"),
     (&["bake", "builtin:atrium", "-o", "a.prt", "--refine", "0.05", "--rays", "4096"], "preparation"),
     (&["reference", "builtin:atrium", "--probe", "builtin:sky", "-o", "a.exr", "--spp", "512"], "rows"),
-    (&["cost", "builtin:atrium", "--probe", "builtin:sky", "-o", ".", "--budget", "600"], "visibility"),
+    (&["cost", "builtin:atrium", "--probe", "builtin:sky", "-o", "new/inner", "--budget", "600"], "visibility"),
 ];
 
 #[test]
@@ -38,6 +38,22 @@ fn an_interrupted_command_leaves_nothing() {
             assert!(last.starts_with("error: ") && last.contains("cancelled"), "{arguments:?}: {text}");
             assert!(files(folder.path()).is_empty(), "{arguments:?}: {:?}", files(folder.path()));
         }
+    }
+}
+
+/// Folders that were made for results go with a command that fails; those that were there stay.
+#[test]
+fn a_command_that_fails_leaves_no_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.gltf"), "{}").unwrap();
+    fs::create_dir(folder.path().join("old")).unwrap();
+    for output in ["new/inner", "old"] {
+        let arguments = ["bases", "--scene", "a.gltf", "--probe", "builtin:sky", "-o", output];
+        let (code, text) = Running::start(command(folder.path(), &arguments)).end();
+        assert_eq!(code, Some(1), "{text}");
+        let mut left = files(folder.path());
+        left.sort();
+        assert_eq!(left, ["a.gltf", "old"], "{text}");
     }
 }
 
