@@ -7,6 +7,7 @@ use anyhow::Result;
 use bake::Extras;
 use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
 use scene::Scene;
+use std::sync::OnceLock;
 use std::time::Instant;
 
 /// Error of the first result: it takes hardly more rays than the two looks that any estimate needs.
@@ -22,31 +23,33 @@ const SHARE: f64 = 0.8;
 /// Exponent of the time over the error before two results tell: rays grow with about this power.
 const EXPONENT: f64 = 1.4;
 
-/// Rays per second that any thread traces in a bake of any scene, all other work counted in.
-const SPEED: f64 = 0.4e6;
-/// Share of the time that the first result may take, for what is foreseen of it.
-const FIRST: f64 = 0.3;
-/// Rays for each that a receiver asks of the sky: what blocks them is looked up, backs and near surfaces look too.
+/// Rays of the first result: the fewest that a bake takes, so that it comes as early as the scene allows and tells how fast rays are there.
+const FIRST_RAYS: u32 = 16;
+/// Rays traced for each of the first result's: some tell what blocks the others.
+const PROBES: f64 = 2.0;
+/// The same where light bounces: what blocks each ray is looked up, backs and near surfaces look too.
 const OTHERS: f64 = 4.0;
 /// Rays of a receiver at [`COARSEST`], about.
 const COARSE_RAYS: f64 = 128.0;
-/// Fewest rays of a first result, and fewest for which its bounces are worth their time.
-const FEWEST_RAYS: u32 = 16;
-/// Receivers from which on the time of a bake tells that of one with more of them.
-const TELLING: f64 = 20_000.0;
+/// Fewest rays for which bounces are worth their time, and for which another result is.
+const FEWEST_RAYS: f64 = 32.0;
+/// Rays of a receiver while triangles are split, about, and by how much receivers grow.
+const REFINEMENT_RAYS: f64 = 256.0;
+const REFINED: f64 = 1.5;
 
-/// A finished bake: the error that it kept, asked for or better, and the seconds that it took.
+/// A finished bake: the error that it kept, asked for or better, and the seconds that it took, all of them and before the first ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Rung {
     error: f32,
     seconds: f64,
+    preparation: f64,
 }
 
-/// Bakes with ever smaller errors while time lasts; `keep` gets each result. The first is finished whatever it takes, so it is a coarse
-/// one, of the triangles as they are; from then on whoever called may end the program at the deadline.
+/// Bakes with ever smaller errors while time lasts; `keep` gets each result. The first is finished whatever it takes, so it is the coarsest,
+/// of the triangles as they are; from then on whoever called may end the program at the deadline.
 ///
-/// The error of each bake is chosen from the times of those before, so that it ends in the time left: what remains after
-/// the last is too little for an error smaller by a fifth.
+/// What follows is chosen from the times of the bakes before, so that it ends in the time left: what remains after the last is too little
+/// for an error smaller by a fifth.
 pub(crate) fn bake(
     scene: &Scene,
     settings: &Settings,
@@ -56,19 +59,26 @@ pub(crate) fn bake(
     console: &Console,
 ) -> Result<Prt> {
     let ladder = Ladder { settings, extras, deadline, keep, console };
-    let first = first(scene, settings, ladder.left());
+    let first = Settings { quality: Quality::Rays(FIRST_RAYS), bounces: Bounces::Fixed(0), ..settings.clone() };
     let (mut best, rung) = ladder.step(scene, &first)?;
-    let mut rungs = vec![rung];
+    let mut speed = Speed::of(&first, rung, receivers(scene));
     let mut scene = std::borrow::Cow::Borrowed(scene);
-    if settings.refine != Refine::Off && ladder.left() > rung.seconds {
+    if settings.refine != Refine::Off && speed.refined(settings, receivers(&scene)) < SHARE * ladder.left() {
         let fine = bake::refine_watched(&scene, settings, &watched(&console.progress())).map_err(fault)?;
-        if foreseen(&scene, &fine, &first, rung) < ladder.left() {
-            let wanted = Settings { quality: Quality::Error(COARSEST), ..settings.clone() };
-            let rung;
-            (best, rung) = ladder.step(&fine, &wanted)?;
-            rungs = vec![rung];
+        if speed.coarse(settings, receivers(&fine)) < SHARE * ladder.left() {
             scene = std::borrow::Cow::Owned(fine.into_owned());
         }
+    }
+    let (mut before, mut rungs) = (first, Vec::new());
+    while rungs.is_empty() {
+        let Some(wanted) = coarser(&before, settings, speed, receivers(&scene), ladder.left()) else { return Ok(best) };
+        let rung;
+        (best, rung) = ladder.step(&scene, &wanted)?;
+        speed = Speed::of(&wanted, rung, receivers(&scene));
+        if let Quality::Error(_) = wanted.quality {
+            rungs.push(rung);
+        }
+        before = wanted;
     }
     while !exhausted(&best) {
         let Some(error) = next(&rungs, ladder.left()) else { break };
@@ -77,6 +87,70 @@ pub(crate) fn bake(
         rungs.push(rung);
     }
     Ok(best)
+}
+
+/// How fast bakes of a scene are, by one of them.
+#[derive(Debug, Clone, Copy)]
+struct Speed {
+    /// Seconds before the first ray, per receiver.
+    preparation: f64,
+    /// Seconds per ray, all other work counted in.
+    ray: f64,
+}
+
+impl Speed {
+    fn of(settings: &Settings, rung: Rung, receivers: f64) -> Speed {
+        let rays = match settings.quality {
+            Quality::Rays(rays) => f64::from(rays),
+            Quality::Error(_) => COARSE_RAYS,
+        };
+        let receivers = receivers.max(1.0);
+        let traced = (rung.seconds - rung.preparation).max(0.0);
+        Speed { preparation: rung.preparation / receivers, ray: traced / (rays * others(settings.bounces) * receivers) }
+    }
+
+    /// Seconds that a bake with so many rays per receiver should take.
+    fn seconds(self, rays: f64, bounces: Bounces, receivers: f64) -> f64 {
+        receivers * (self.preparation + self.ray * rays * others(bounces))
+    }
+
+    fn coarse(self, settings: &Settings, receivers: f64) -> f64 {
+        self.seconds(COARSE_RAYS, settings.bounces, receivers)
+    }
+
+    /// Seconds that splitting the triangles and a coarse bake of them should take.
+    fn refined(self, settings: &Settings, receivers: f64) -> f64 {
+        self.seconds(REFINEMENT_RAYS, Bounces::Fixed(0), receivers) + self.coarse(settings, REFINED * receivers)
+    }
+
+    /// Rays per receiver of a bake in so many seconds.
+    fn rays(self, seconds: f64, bounces: Bounces, receivers: f64) -> f64 {
+        (seconds / receivers.max(1.0) - self.preparation) / (self.ray * others(bounces)).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// Rays that are traced for each that a receiver asks of the sky.
+fn others(bounces: Bounces) -> f64 {
+    if bounces == Bounces::Fixed(0) { PROBES } else { OTHERS }
+}
+
+/// Settings of the result after one of a number of rays: a coarse error, where the time does not suffice more rays than before, with a
+/// bounce if possible; none where there would be too few.
+fn coarser(before: &Settings, settings: &Settings, speed: Speed, receivers: f64, left: f64) -> Option<Settings> {
+    let left = SHARE * left;
+    if speed.coarse(settings, receivers) < left {
+        return Some(Settings { quality: Quality::Error(COARSEST), ..settings.clone() });
+    }
+    let Quality::Rays(had) = before.quality else { return None };
+    let one = if settings.bounces == Bounces::Fixed(0) { Bounces::Fixed(0) } else { Bounces::Fixed(1) };
+    [one, Bounces::Fixed(0)].into_iter().find_map(|bounces| {
+        let rays = speed.rays(left, bounces, receivers);
+        (rays >= FEWEST_RAYS.max(2.0 * f64::from(had))).then(|| Settings {
+            quality: Quality::Rays(rays.min(COARSE_RAYS) as u32),
+            bounces,
+            ..settings.clone()
+        })
+    })
 }
 
 /// What all bakes have in common.
@@ -97,8 +171,15 @@ impl Ladder<'_> {
     fn step(&self, scene: &Scene, wanted: &Settings) -> Result<(Prt, Rung)> {
         let start = Instant::now();
         let wanted = Settings { refine: Refine::Off, ..wanted.clone() };
-        let mut prt =
-            bake::bake_with(scene, &wanted, self.extras, &watched(&self.console.progress())).map_err(fault)?;
+        let (progress, traced) = (self.console.progress(), OnceLock::new());
+        let show = watched(&progress);
+        let watch = |now: &bake::Progress| {
+            if now.stage != bake::Stage::Preparation {
+                traced.get_or_init(Instant::now);
+            }
+            show(now)
+        };
+        let mut prt = bake::bake_with(scene, &wanted, self.extras, &watch).map_err(fault)?;
         prt.settings.refine = self.settings.refine;
         (self.keep)(&prt)?;
         let reached = reached(&prt);
@@ -107,13 +188,16 @@ impl Ladder<'_> {
             Quality::Error(asked) => asked.min(reached),
             Quality::Rays(_) => COARSEST,
         };
-        let rung = Rung { error, seconds: start.elapsed().as_secs_f64() };
+        let preparation = traced.get().map_or(0.0, |traced| traced.duration_since(start).as_secs_f64());
+        let rung = Rung { error, seconds: start.elapsed().as_secs_f64(), preparation };
         let seconds = self.console.began().elapsed().as_secs_f64();
         match wanted.quality {
             Quality::Error(_) => {
                 self.console.notice(&format!("after {seconds:.1} s: 95 % of the errors below {}", percent(reached)));
             }
-            Quality::Rays(rays) => self.console.notice(&format!("after {seconds:.1} s: a first result of {rays} rays")),
+            Quality::Rays(rays) => {
+                self.console.notice(&format!("after {seconds:.1} s: a result of {rays} rays per receiver"));
+            }
         }
         Ok((prt, rung))
     }
@@ -124,37 +208,10 @@ fn reached(prt: &Prt) -> f32 {
     prt.achieved.error[1].max(prt.achieved.maps.map_or(0.0, |maps| maps.error[1]))
 }
 
-/// Settings of the first result: as coarse as the time needs, by a speed that every machine has.
-fn first(scene: &Scene, settings: &Settings, seconds: f64) -> Settings {
-    let rays = SPEED * rayon::current_num_threads() as f64 * FIRST * seconds / (OTHERS * receivers(scene).max(1.0));
-    if rays >= COARSE_RAYS {
-        return Settings { quality: Quality::Error(COARSEST), ..settings.clone() };
-    }
-    let bounces = match settings.bounces {
-        _ if rays < f64::from(FEWEST_RAYS) / 2.0 => Bounces::Fixed(0),
-        Bounces::Fixed(0) => Bounces::Fixed(0),
-        _ => Bounces::Fixed(1),
-    };
-    Settings { quality: Quality::Rays((rays as u32).clamp(FEWEST_RAYS, 64)), bounces, ..settings.clone() }
-}
-
 /// Vertices, and the backs of those that have two sides.
 fn receivers(scene: &Scene) -> f64 {
     let sides = |mesh: &scene::Mesh| if scene.materials[mesh.material as usize].double_sided { 2.0 } else { 1.0 };
     scene.meshes.iter().map(|mesh| mesh.positions.len() as f64 * sides(mesh)).sum()
-}
-
-/// Seconds that a coarse bake of the split triangles should take, by the first bake; 0 where that was too small to tell.
-fn foreseen(scene: &Scene, fine: &Scene, first: &Settings, rung: Rung) -> f64 {
-    let before = receivers(scene);
-    if before < TELLING {
-        return 0.0;
-    }
-    let rays = match first.quality {
-        Quality::Rays(rays) => COARSE_RAYS / f64::from(rays),
-        Quality::Error(_) => 1.0,
-    };
-    rung.seconds * rays * receivers(fine) / before
 }
 
 /// Whether no error is left, or most receivers took all directions that there are: a smaller error would change nothing.
@@ -198,7 +255,7 @@ mod tests {
         let (mut rungs, mut used, mut error) = (Vec::new(), 0.0, COARSEST);
         loop {
             used += seconds(error);
-            rungs.push(Rung { error, seconds: seconds(error) });
+            rungs.push(Rung { error, seconds: seconds(error), preparation: 0.0 });
             match rule(&rungs, allowed - used) {
                 Some(finer) => error = finer,
                 None => return (rungs.iter().map(|r| r.error).collect(), used),
@@ -227,23 +284,66 @@ mod tests {
         assert!(used > 100.0, "{errors:?} take {used}");
     }
 
-    /// A scene too large for its time gets few rays, and no bounces where even these are many; a small one is as asked for.
-    #[test]
-    fn the_first_result_is_as_coarse_as_its_time() {
-        let scene = scene::builtin("atrium").expect("built in");
+    /// Of a machine that traces so many rays a second, with so many seconds of preparation: the results in the time, by their rays, and
+    /// the seconds that they take. Rays of an error are those of a coarse one.
+    fn results(receivers: f64, preparation: f64, rays_per_second: f64, allowed: f64) -> (Vec<f64>, f64) {
         let settings = bake::settings::standard();
-        assert_eq!(first(&scene, &settings, 60.0).quality, Quality::Error(COARSEST));
-        let quick = first(&scene, &settings, 1e-3 * receivers(&scene) * 1e-3);
-        assert_eq!(quick.quality, Quality::Rays(FEWEST_RAYS));
-        assert!(matches!(quick.bounces, Bounces::Fixed(0 | 1)), "{:?}", quick.bounces);
-        let none = first(&scene, &settings, 0.0);
-        assert_eq!((none.quality, none.bounces), (Quality::Rays(FEWEST_RAYS), Bounces::Fixed(0)));
+        let (mut left, mut found) = (allowed, Vec::new());
+        let mut wanted =
+            Settings { quality: Quality::Rays(FIRST_RAYS), bounces: Bounces::Fixed(0), ..settings.clone() };
+        loop {
+            let rays = match wanted.quality {
+                Quality::Rays(rays) => f64::from(rays),
+                Quality::Error(_) => COARSE_RAYS,
+            };
+            let seconds = preparation + receivers * rays * others(wanted.bounces) / rays_per_second;
+            left -= seconds;
+            found.push(rays);
+            let speed = Speed::of(&wanted, Rung { error: COARSEST, seconds, preparation }, receivers);
+            match coarser(&wanted, &settings, speed, receivers, left) {
+                Some(next) if matches!(wanted.quality, Quality::Rays(_)) => wanted = next,
+                _ => return (found, allowed - left),
+            }
+        }
+    }
+
+    /// The first result is the coarsest, whatever the time; a coarse error follows where the measured speed allows it, else more rays,
+    /// and all of that within the time.
+    #[test]
+    fn results_follow_from_the_measured_speed() {
+        // Twice a first result takes 7 s, then 70 s.
+        let (fast, slow) = (4e6, 2e5);
+        let (found, used) = results(200_000.0, 2.0, fast, 60.0);
+        assert_eq!(found, [16.0, COARSE_RAYS], "in {used} s");
+        let (found, used) = results(200_000.0, 2.0, fast, 20.0);
+        assert!(found.len() == 2 && found[1] >= FEWEST_RAYS && found[1] < COARSE_RAYS, "{found:?}");
+        assert!(used < 20.0, "{used}");
+        let (found, used) = results(200_000.0, 2.0, slow, 20.0);
+        assert_eq!(found, [16.0], "the time is up before more could come: {used}");
+        let (found, used) = results(1_000.0, 0.1, slow, 20.0);
+        assert_eq!(found, [16.0, COARSE_RAYS], "a small scene, in {used} s");
+    }
+
+    /// The same scene on a machine that is taken to be ten times as fast as it is: the check above would see it.
+    #[test]
+    fn results_follow_from_the_measured_speed_can_fail() {
+        let settings = bake::settings::standard();
+        let guessed = Speed { preparation: 1e-5, ray: 1.0 / 4e7 };
+        let next = coarser(
+            &Settings { quality: Quality::Rays(FIRST_RAYS), ..settings.clone() },
+            &settings,
+            guessed,
+            200_000.0,
+            16.0,
+        );
+        let wanted = next.expect("the guess allows it");
+        assert!(2.0 + 200_000.0 * COARSE_RAYS * others(wanted.bounces) / 4e6 > 16.0, "it takes longer");
     }
 
     #[test]
     fn nothing_follows_where_time_is_up() {
-        assert_eq!(next(&[Rung { error: COARSEST, seconds: 5.0 }], 0.0), None);
-        assert_eq!(next(&[Rung { error: FINEST, seconds: 1.0 }], 1000.0), None);
+        assert_eq!(next(&[Rung { error: COARSEST, seconds: 5.0, preparation: 0.0 }], 0.0), None);
+        assert_eq!(next(&[Rung { error: FINEST, seconds: 1.0, preparation: 0.0 }], 1000.0), None);
         assert_eq!(next(&[], 10.0), None);
     }
 }
