@@ -39,10 +39,8 @@ pub(crate) fn settle(picture: &mut Picture, choice: NonFinite) -> Result<Option<
     }
     let finite = picture.pixels.iter().flatten().filter(|v| v.is_finite());
     let largest = finite.fold(LARGEST_HALF, |a, b| a.max(*b));
-    let mut infinite = 0;
-    for &i in &broken {
-        infinite += usize::from(picture.pixels[i].iter().any(|v| v.is_infinite()));
-    }
+    let count = |value: f32| broken.iter().filter(|&&i| picture.pixels[i].contains(&value)).count();
+    let (infinite, negative) = (count(f32::INFINITY), count(f32::NEG_INFINITY));
     let nan: Vec<usize> = broken.iter().copied().filter(|&i| picture.pixels[i].iter().any(|v| v.is_nan())).collect();
     // Before infinite values are replaced: they are no finite neighbours.
     fill(picture, nan.clone());
@@ -53,8 +51,9 @@ pub(crate) fn settle(picture: &mut Picture, choice: NonFinite) -> Result<Option<
             v => v,
         });
     }
+    let below = if negative > 0 { format!(", {negative} of minus infinity 0") } else { String::new() };
     Ok(Some(format!(
-        "{} pixels were not finite, the first {place}: {infinite} infinite ones became {largest}, {} NaN ones the mean of \
+        "{} pixels were not finite, the first {place}: {infinite} infinite ones became {largest}{below}, {} NaN ones the mean of \
          their neighbours",
         broken.len(),
         nan.len()

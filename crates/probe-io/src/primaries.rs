@@ -124,7 +124,9 @@ impl ColorSpace {
             return None;
         }
         let Primaries { red, green, blue, white } = self.primaries;
-        let stated = format!("red {red:?}, green {green:?}, blue {blue:?}, white {white:?}");
+        let place = |[x, y]: [f64; 2]| format!("({x:.4}, {y:.4})");
+        let [red, green, blue, white] = [red, green, blue, white].map(place);
+        let stated = format!("red {red}, green {green}, blue {blue}, white {white}");
         let Some(matrix) = self.primaries.rec_709(self.adapted) else {
             return Some(format!("the primaries ({stated}) span no space of colours: read as Rec. 709"));
         };

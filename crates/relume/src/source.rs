@@ -242,7 +242,9 @@ impl ProbeSource {
                 path
             }
             Source::Builtin(name) => {
-                return Ok(probe_io::builtin(name).ok_or_else(|| unknown(name, &[probe_io::BUILTINS]))?);
+                let environment = probe_io::builtin(name).ok_or_else(|| unknown(name, &[probe_io::BUILTINS]))?;
+                check_radiance(&environment, &self.name())?;
+                return Ok(environment);
             }
         };
         let negatives = match read.negatives {
@@ -262,8 +264,22 @@ impl ProbeSource {
         for warning in warnings {
             console.notice(&format!("warning: {warning}"));
         }
+        check_radiance(&environment, &self.name())?;
         Ok(environment)
     }
+}
+
+/// Most radiance of a pixel: sums of more would leave the range of numbers.
+const BRIGHTEST: f32 = 1e30;
+
+/// Fails where a light is too bright to be summed.
+fn check_radiance(environment: &Environment, name: &str) -> Result<()> {
+    let brightest = environment.image.pixels.iter().flatten().copied().fold(0.0, f32::max);
+    anyhow::ensure!(
+        brightest <= BRIGHTEST,
+        "{name}: a radiance of {brightest:e} is too much to be summed: give 1e30 at most"
+    );
+    Ok(())
 }
 
 /// The layouts by the names that are typed.

@@ -77,3 +77,36 @@ fn probes_are_read_as_the_options_say() {
     assert_eq!(output.status.code(), Some(1));
     assert!(told.contains("no layer") && told.contains("beauty") && !told.contains('\u{1b}'), "{told}");
 }
+
+/// Coefficients are numbers: light whose sum would be none is refused.
+#[test]
+fn light_beyond_all_numbers_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut pixels = vec![[1e38f32; 3]; 128];
+    probe_io::write_exr(&folder.join("a.exr"), 16, 8, &pixels).unwrap();
+    for probe in ["a.exr", "builtin:constant:1e38"] {
+        let output = relume(folder, &["light", probe, "-o", "l.json"]);
+        let told = complaint(&output);
+        assert!(output.status.code() == Some(1) && told.contains("1e38") && told.contains("1e30"), "{told}");
+        assert!(!folder.join("l.json").exists());
+    }
+    pixels.fill([1e30; 3]);
+    probe_io::write_exr(&folder.join("a.exr"), 16, 8, &pixels).unwrap();
+    assert!(light(folder, &["a.exr"]).iter().flatten().all(|value| value.is_finite()), "can fail");
+}
+
+/// Minus infinity is no light, and not the largest there is.
+#[test]
+fn minus_infinity_becomes_nothing_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut pixels = vec![[1.0f32; 3]; 128];
+    pixels[20] = [f32::NEG_INFINITY; 3];
+    probe_io::write_exr(&folder.join("a.exr"), 16, 8, &pixels).unwrap();
+    let told = complaint(&relume(folder, &["light", "a.exr", "--nonfinite", "clamp", "-o", "l.npy"]));
+    assert!(told.contains("1 of minus infinity 0") && told.contains("0 infinite ones"), "{told}");
+    pixels[20] = [0.0; 3];
+    probe_io::write_exr(&folder.join("b.exr"), 16, 8, &pixels).unwrap();
+    assert_eq!(light(folder, &["a.exr", "--nonfinite", "clamp"]), light(folder, &["b.exr"]));
+}
