@@ -301,11 +301,16 @@ impl Gatherer<'_> {
         }
         let scale = (1.0 - f64::from(openness)) / total;
         let bodies = &self.world.bodies;
-        let inside: f64 = found.iter().filter(|(_, hit, _)| bodies.is_inside(hit)).map(|(_, _, weight)| weight).sum();
+        let sum = |is: &dyn Fn(&Hit) -> bool| -> f64 {
+            found.iter().filter(|(_, hit, _)| is(hit)).map(|(_, _, weight)| weight).sum()
+        };
+        let inside = sum(&|hit| bodies.is_inside(hit));
+        let behind = sum(&|hit| !hit.front && !self.world.is_two_sided(hit.triangle));
         let [xs, ys, zs] = &worker.directions;
         let direction = |j: usize| Vec3::new(xs[j], ys[j], zs[j]);
         let found = found.into_iter().map(|(j, hit, weight)| (direction(j), hit, (weight * scale) as f32));
-        Blockers { rays, inside_share: (inside / total) as f32, found: found.collect(), filters: Vec::new() }
+        let [inside_share, behind_share] = [inside, behind].map(|sum| (sum / total) as f32);
+        Blockers { rays, inside_share, behind_share, found: found.collect(), filters: Vec::new() }
     }
 
     fn pack(&self, blockers: Blockers, index: u32, out: &mut Gathered) {
@@ -348,6 +353,8 @@ pub(crate) struct Blockers {
     pub(crate) rays: u64,
     /// Share of them that meets the inside of a body.
     pub(crate) inside_share: f32,
+    /// Share of them that meets the back of a surface with one side, of a body or not; not told where some surfaces are translucent.
+    pub(crate) behind_share: f32,
     /// World directions, what they meet, and their weights, which sum to what is not open.
     pub(crate) found: Vec<(Vec3, Hit, f32)>,
     /// Of each: the factor of its light on the way through translucent surfaces, RGB; empty where there are none.

@@ -6,6 +6,7 @@
 mod check;
 mod directional;
 mod frame;
+mod hidden;
 mod join;
 pub(crate) mod plate;
 mod stitch;
@@ -21,6 +22,7 @@ use crate::receivers::{Receiver, morton_order};
 use crate::repair::is_inside;
 use coeff_io::{Coding, Effect, Effort, Encoded, Encoding, Layers, MapLight, MapRecord, Maps, Prt, Sheet, curves};
 use frame::{Converter, TangentFrame};
+use hidden::{Hidden, is_hidden};
 use plate::Plate;
 use rayon::prelude::*;
 use scene::lightmap::{Charts, Texel, texels};
@@ -92,6 +94,8 @@ struct Gathered {
     errors: Vec<f32>,
     /// Texels inside of bodies.
     inside: Vec<Texel>,
+    /// Texels that no view shows, with what arrives there.
+    hidden: Vec<Hidden>,
     record: MapRecord,
 }
 
@@ -138,7 +142,7 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     }
     for gathered in &mut sheets {
         done.monitor.check()?;
-        gathered.plate.mend();
+        gathered.mend(shape);
         gathered.record.unfilled = gathered.fill_from_vertices(done, shape) as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
     }
@@ -191,7 +195,8 @@ fn gather(
         count += chart.count;
     }
     let mut plate = Plate::empty([sheet.width as usize, sheet.height as usize], shape.len());
-    let (mut frames, mut errors, mut inside, mut record) = (Vec::new(), Vec::new(), Vec::new(), MapRecord::default());
+    let (mut frames, mut errors, mut record) = (Vec::new(), Vec::new(), MapRecord::default());
+    let (mut inside, mut hidden) = (Vec::new(), Vec::new());
     for ((texel, point), arrival) in touched.iter().zip(&points).zip(found) {
         let place = texel.row as usize * plate.width + texel.column as usize;
         let chart = first_chart[&texel.mesh] + charts[&(texel.mesh as usize)].of_triangle[texel.triangle as usize];
@@ -203,6 +208,11 @@ fn gather(
             inside.push(*texel);
             continue;
         }
+        if is_hidden(&arrival) {
+            plate.owner[place] = chart;
+            hidden.push(Hidden { texel: *texel, place, row: arrival.values });
+            continue;
+        }
         plate.add_slot(place, chart);
         errors.push(arrival.error);
         plate.values.extend_from_slice(&arrival.values);
@@ -211,7 +221,8 @@ fn gather(
     }
     plate.values.par_chunks_mut(shape.len().max(1)).for_each(|row| to_irradiance(row, shape));
     record.texels = touched.len() as u64;
-    Ok(Gathered { plate, frames, errors, inside, record })
+    hidden.iter_mut().for_each(|one| to_irradiance(&mut one.row, shape));
+    Ok(Gathered { plate, frames, errors, inside, hidden, record })
 }
 
 /// What all sheets took and reached.

@@ -197,6 +197,11 @@ impl<'a> World<'a> {
         self.mirrored = self.scene.materials.iter().map(even).collect();
     }
 
+    /// Whether the back of a traced triangle is drawn too.
+    pub(crate) fn is_two_sided(&self, triangle: u32) -> bool {
+        self.scene.materials[self.scene.meshes[self.locate(triangle).0].material as usize].double_sided
+    }
+
     /// Share of the light at a hit that the surface sends on to all sides, linear: its albedo; where it shines less what its mirror takes, and
     /// more by what the mirror of a dielectric returns on its mean where that is not sent by direction; never more than all.
     pub(crate) fn sent(&self, hit: &Hit) -> Vec3 {
