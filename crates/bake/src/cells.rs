@@ -1,7 +1,10 @@
 //! Cells of triangles that are too large to carry bounces: what falls on their far corners says little of what falls in between.
 //!
 //! Where a ray meets such a triangle, the cell around that place has a receiver of its own for the time of the bake. It stands where a ray
-//! met it, so never inside of a body nor beyond a wall that the triangle passes through.
+//! met it, so never inside of a body nor beyond a wall that the triangle passes through. A cell through which a wall goes falls into parts,
+//! one for each side.
+
+mod parts;
 
 use crate::hit::NearPoint;
 use crate::receivers::{NONE, Receivers};
@@ -11,6 +14,8 @@ use crate::world::World;
 const COARSE_TRIANGLES: f64 = 2000.0;
 /// Their cells have the size that so many triangles would have.
 const EVEN_TRIANGLES: f64 = 16_000.0;
+/// Marks triangles whose cells are whole.
+const WHOLE: usize = usize::MAX;
 /// Most cells along an edge.
 const MOST_SIDES: u32 = 64;
 
@@ -20,15 +25,21 @@ pub(crate) struct Cells {
     /// Of each traced triangle its entry in `divided`, or [`NONE`]; empty where none is divided.
     index: Vec<u32>,
     divided: Vec<Divided>,
+    /// Of each fine place of the divided triangles its part, among those of the triangle.
+    part_of: Vec<u32>,
+    /// Parts of all.
     count: u32,
 }
 
-/// A triangle of `sides` cells along each edge, numbered from `first`.
+/// A triangle of `sides` cells along each edge, whose `parts` parts are numbered from `first`, those of its fine places from `fine`; [`WHOLE`]
+/// where each cell is a part.
 #[derive(Debug, Clone, Copy)]
 struct Divided {
     triangle: u32,
     first: u32,
     sides: u32,
+    parts: u32,
+    fine: usize,
 }
 
 impl Cells {
@@ -49,18 +60,32 @@ impl Cells {
                 let sides = ((extent / longest).ceil() as u32).min(MOST_SIDES);
                 cells.index.resize(triangles as usize, NONE);
                 cells.index[triangle as usize] = cells.divided.len() as u32;
-                cells.divided.push(Divided { triangle, first: cells.count, sides });
-                cells.count += sides * sides;
+                let whole = Divided { triangle, first: cells.count, sides, parts: 0, fine: cells.part_of.len() };
+                let room = cells.part_of.len() + (whole.fine().sides as usize).pow(2) <= parts::MOST_PLACES;
+                let found = if room { parts::parts(world, &whole) } else { None };
+                let divided = match found {
+                    Some((part_of, parts)) => {
+                        cells.part_of.extend(part_of);
+                        Divided { parts, ..whole }
+                    }
+                    None => Divided { parts: sides * sides, fine: WHOLE, ..whole },
+                };
+                cells.count += divided.parts;
+                cells.divided.push(divided);
             }
         }
         cells
     }
 
-    /// The cell of a point of a traced triangle, where that is divided.
+    /// The cell, or the part of one, of a point of a traced triangle, where that is divided.
     pub(crate) fn at(&self, triangle: u32, barycentrics: [f32; 2]) -> Option<u32> {
         let index = *self.index.get(triangle as usize)?;
         let divided = self.divided.get(index as usize)?;
-        Some(divided.first + divided.place(barycentrics))
+        let part = match divided.fine {
+            WHOLE => divided.place(barycentrics),
+            fine => self.part_of[fine + divided.fine().place(barycentrics) as usize],
+        };
+        Some(divided.first + part)
     }
 
     /// Cells along the edges of a traced triangle.
@@ -83,10 +108,11 @@ impl Cells {
         receivers.cell_of.resize(2 * self.count as usize, NONE);
         for divided in &self.divided {
             let corner = world.corners[divided.triangle as usize][0];
-            let cells = divided.first..divided.first + divided.sides * divided.sides;
+            let cells = divided.first..divided.first + divided.parts;
+            let middles = self.middles(divided);
             for side in [0, 1] {
                 let slot = |cell: u32| (2 * cell + side) as usize;
-                let (of, middle) = (&receivers.cell_of, |cell: u32| divided.middle(cell - divided.first));
+                let (of, middle) = (&receivers.cell_of, |cell: u32| middles[(cell - divided.first) as usize]);
                 let known: Vec<(u32, [f32; 2])> =
                     cells.clone().filter(|&c| of[slot(c)] != NONE).map(|c| (of[slot(c)], middle(c))).collect();
                 let nearest = |cell: u32| {
@@ -111,7 +137,26 @@ impl Cells {
     }
 }
 
+impl Cells {
+    /// Of each part of a triangle a place in it, barycentrics.
+    fn middles(&self, divided: &Divided) -> Vec<[f32; 2]> {
+        if divided.fine == WHOLE {
+            return (0..divided.parts).map(|cell| divided.middle(cell)).collect();
+        }
+        let (fine, mut middles) = (divided.fine(), vec![[0.0; 2]; divided.parts as usize]);
+        for place in 0..fine.sides * fine.sides {
+            middles[self.part_of[divided.fine + place as usize] as usize] = fine.middle(place);
+        }
+        middles
+    }
+}
+
 impl Divided {
+    /// The same triangle in fine places.
+    fn fine(&self) -> Self {
+        Self { sides: self.sides * parts::FINE, ..*self }
+    }
+
     /// Number of the cell of a point within its triangle. Row `j` has `2 (sides - j) - 1` cells.
     fn place(&self, [u, v]: [f32; 2]) -> u32 {
         let n = self.sides;
@@ -139,7 +184,7 @@ mod tests {
     #[test]
     fn cells_divide_a_triangle() {
         for sides in [1, 2, 5, 64] {
-            let divided = Divided { triangle: 0, first: 0, sides };
+            let divided = Divided { triangle: 0, first: 0, sides, parts: 0, fine: 0 };
             for cell in 0..sides * sides {
                 assert_eq!(divided.place(divided.middle(cell)), cell, "of {sides} sides");
             }
@@ -154,6 +199,10 @@ mod tests {
             // Of 144 points of a square of two cells, those of the diagonal may fall on either side.
             assert!(count.iter().all(|n| (60..=78).contains(n)), "{count:?}");
         }
-        assert_eq!(Divided { triangle: 0, first: 0, sides: 3 }.place([0.0, 1.0]), 8, "the far corner has a cell");
+        assert_eq!(
+            Divided { triangle: 0, first: 0, sides: 3, parts: 0, fine: 0 }.place([0.0, 1.0]),
+            8,
+            "the far corner has a cell"
+        );
     }
 }
