@@ -1,10 +1,12 @@
 //! Prints how far a bake is from the path tracer: `agreement -- SCENE PROBE [RECEIVERS] [RAYS] [all]`.
 //!
-//! One line for direct light, one for a single bounce, one for all bounces (`all`: that line alone); the figures of `docs/comparison.md`.
+//! SCENE is a path, `builtin:NAME`, or `pine`, whose cards blend. One line for direct light, one for a single bounce, one for all bounces (`all`: that line alone); the figures of `docs/comparison.md`.
 
 #![expect(clippy::print_stdout, reason = "an example that prints a table")]
 
 mod named;
+#[path = "../tests/support/pine.rs"]
+mod pine;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
@@ -24,7 +26,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some(rays) => Quality::Rays(rays.parse()?),
         None => bake::settings::standard().quality,
     };
-    let (scene, environment) = (named::scene(scene_name)?, named::probe(probe_name)?);
+    let scene = match scene_name.as_str() {
+        "pine" => pine::pine(tempfile::tempdir()?.path()),
+        name => named::scene(name)?,
+    };
+    let environment = named::probe(probe_name)?;
     let bands = Bands::new(bake::settings::standard().bands).ok_or("no such number of bands")?;
     let light = BandLight::new(&sh_math::project(bands, environment.samples()));
     println!("{scene_name} under {probe_name}: {} vertices", scene.vertex_count());

@@ -1,5 +1,6 @@
 //! The figures of a comparison.
 
+use super::subject::Spot;
 use super::{BandLight, Subject};
 use reference::{Estimate, Settings, World, radiance_at};
 use std::fmt::{Display, Formatter};
@@ -16,8 +17,10 @@ const MOST: u32 = 1 << 20;
 pub(crate) struct Figures {
     /// Receivers compared.
     pub(crate) receivers: usize,
-    /// Receivers drawn but left out: they stand inside bodies or have no normal.
-    pub(crate) left_out: usize,
+    /// How many of them stand inside bodies, and are compared where their surface comes out.
+    pub(crate) moved: usize,
+    /// Receivers drawn beside them that show nowhere: wholly inside bodies, or without normal and area.
+    pub(crate) hidden: [usize; 2],
     /// Paths per receiver.
     pub(crate) paths: u32,
     /// Mean of |bake - reference| over receivers and channels, as a share of the mean radiance.
@@ -76,13 +79,13 @@ impl Row {
 }
 
 fn rows(subject: &Subject, light: &BandLight, traced: &[Estimate]) -> Vec<Row> {
-    let row = |(&row, &traced): (&usize, &Estimate)| Row {
-        row,
-        area: subject.area(row),
-        baked: subject.radiance(row, &light.coefficients),
+    let row = |(spot, &traced): (&Spot, &Estimate)| Row {
+        row: spot.row,
+        area: subject.area(spot.row),
+        baked: subject.radiance(spot, &light.coefficients),
         traced,
     };
-    subject.rows.iter().zip(traced).map(row).collect()
+    subject.spots.iter().zip(traced).map(row).collect()
 }
 
 fn figures(subject: &Subject, mut rows: Vec<Row>, paths: u32) -> Figures {
@@ -101,7 +104,8 @@ fn figures(subject: &Subject, mut rows: Vec<Row>, paths: u32) -> Figures {
     let sum = |value: &dyn Fn(&Row) -> f64| rows.iter().map(value).sum::<f64>();
     Figures {
         receivers: rows.len(),
-        left_out: subject.left_out,
+        moved: subject.moved,
+        hidden: [subject.buried, subject.flat],
         paths,
         difference: sum(&Row::difference) / total,
         by_area: sum(&|r| r.area * r.difference()) / sum(&|r| r.area * r.size()),
@@ -117,7 +121,9 @@ impl Display for Figures {
         let [median, most] = self.relative;
         let shares = [self.difference, self.by_area, self.bias, self.noise, median, most].map(|share| 100.0 * share);
         let [difference, by_area, bias, noise, median, most] = shares;
-        write!(f, "{} receivers ({} left out), {} paths: ", self.receivers, self.left_out, self.paths)?;
+        let [buried, flat] = self.hidden;
+        write!(f, "{} receivers ({} where they come out of bodies; beside them ", self.receivers, self.moved)?;
+        write!(f, "{buried} wholly buried and {flat} without area), {} paths: ", self.paths)?;
         write!(f, "difference {difference:.2} % (by area {by_area:.2} %), bias {bias:+.2} %, noise {noise:.2} %, ")?;
         write!(f, "per receiver median {median:.2} %, 95th percentile {most:.2} %; worst:\n{}", self.worst)
     }

@@ -2,6 +2,7 @@
 
 mod light;
 mod measure;
+mod solids;
 mod subject;
 
 pub(crate) use light::BandLight;

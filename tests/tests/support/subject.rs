@@ -1,19 +1,15 @@
 //! A baked scene and the receivers of it that are compared.
 
+use super::solids::Solids;
 use bake::{Receiver, Receivers};
 use coeff_io::{Bounces, Prt, Quality, Settings};
-use raytrace::{Ray, Tracer, offset_origin};
-use sampling::frame::Frame;
 use sampling::rng::Rng;
-use sampling::warp::square_to_cosine_concentric;
 use scene::Scene;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-/// Rays that decide whether a receiver stands inside a body.
-const PROBES: u32 = 256;
-/// Share of the blocked rays that meet the insides of bodies from which a receiver counts as buried. The bake mends its
-/// receivers from a share of one half on; between the two its estimate and this one may differ.
-const BURIED: f32 = 0.4;
+/// Halvings by which the place is found where a surface comes out of a body.
+const HALVINGS: u32 = 10;
 
 /// A scene, its bake, and the rows that are compared.
 pub(crate) struct Subject {
@@ -21,12 +17,22 @@ pub(crate) struct Subject {
     pub(crate) scene: Scene,
     /// The bake.
     pub(crate) prt: Prt,
-    /// Row `r` of the transfer belongs to receiver `r`.
-    receivers: Vec<Receiver>,
-    /// Rows drawn at random from those whose values are their own, without repetition.
-    pub(crate) rows: Vec<usize>,
-    /// Rows drawn but left out: they stand inside bodies or have no normal.
-    pub(crate) left_out: usize,
+    /// Rows drawn at random, without repetition, with the places where they show.
+    pub(crate) spots: Vec<Spot>,
+    /// How many of them stand inside bodies, and are compared where their surface comes out.
+    pub(crate) moved: usize,
+    /// Rows drawn beside them that show nowhere: neither they nor any neighbour stands outside of bodies.
+    pub(crate) buried: usize,
+    /// Rows drawn that have no normal, nor their triangles an area.
+    pub(crate) flat: usize,
+}
+
+/// A place where a row of the transfer shows.
+pub(crate) struct Spot {
+    pub(crate) row: usize,
+    /// Rows between which the renderers interpolate there, with their shares.
+    shares: Vec<(usize, f64)>,
+    at: Receiver,
 }
 
 impl Subject {
@@ -39,24 +45,21 @@ impl Subject {
     pub(crate) fn bake_with(scene: Scene, settings: &Settings, count: usize) -> Self {
         let prt = bake::bake(&scene, settings, &|_| ControlFlow::Continue(())).expect("the scene bakes");
         let all = Receivers::of(&bake::refine(&scene, settings).expect("the bake has split it before"));
-        let receivers = all.list[..all.permanent].to_vec();
-        assert_eq!(prt.geometry.positions.len(), receivers.len(), "rows of the transfer are the receivers, in order");
-        let (rows, left_out) = draw(&scene, &receivers, count);
-        Self { scene, prt, receivers, rows, left_out }
+        assert_eq!(prt.geometry.positions.len(), all.permanent, "rows of the transfer are the receivers, in order");
+        let mut subject = Self { scene, prt, spots: Vec::new(), moved: 0, buried: 0, flat: 0 };
+        subject.draw(&all, count);
+        subject
     }
 
     /// The compared receivers as the path tracer takes them.
     pub(crate) fn points(&self) -> Vec<reference::Receiver> {
-        let point = |&row: &usize| {
-            let r = &self.receivers[row];
-            reference::Receiver {
-                position: r.position,
-                normal: r.normal,
-                geometric_normal: r.geometric_normal,
-                albedo: self.prt.transfer.albedo[row].into(),
-            }
+        let point = |Spot { row, at, .. }: &Spot| reference::Receiver {
+            position: at.position,
+            normal: at.normal,
+            geometric_normal: at.geometric_normal,
+            albedo: self.prt.transfer.albedo[*row].into(),
         };
-        self.rows.iter().map(point).collect()
+        self.spots.iter().map(point).collect()
     }
 
     /// Area that a row stands for, square metres: a third of its triangles'.
@@ -69,78 +72,83 @@ impl Subject {
         geometry.triangles.iter().filter(|t| t.contains(&(row as u32))).map(of).sum()
     }
 
-    /// Outgoing radiance of a row under a light: albedo times transfer times light.
-    pub(crate) fn radiance(&self, row: usize, light: &sh_math::Rgb) -> [f64; 3] {
+    /// Outgoing radiance at a place under a light: albedo of its row times transfer times light.
+    pub(crate) fn radiance(&self, spot: &Spot, light: &sh_math::Rgb) -> [f64; 3] {
         let transfer = &self.prt.transfer;
         let (n, channels) = ((transfer.bands * transfer.bands) as usize, transfer.channels as usize);
-        let values = &transfer.values[row * n * channels..][..n * channels];
-        std::array::from_fn(|c| {
+        let of_row = |row: usize, c: usize| {
+            let values = &transfer.values[row * n * channels..][..n * channels];
             let term = |i: usize| f64::from(values[i * channels + c.min(channels - 1)]) * f64::from(light.values[i][c]);
-            f64::from(transfer.albedo[row][c]) * (0..n).map(term).sum::<f64>()
-        })
-    }
-}
-
-/// A random subset of the receivers that can see, and how many were drawn that cannot.
-fn draw(scene: &Scene, receivers: &[Receiver], count: usize) -> (Vec<usize>, usize) {
-    let mut rng = Rng::new(1, 0);
-    let mut order: Vec<usize> = (0..receivers.len()).collect();
-    for k in (1..order.len()).rev() {
-        order.swap(k, (rng.next_u64() % (k as u64 + 1)) as usize);
-    }
-    let bodies = Bodies::of(scene);
-    let (mut rows, mut left_out) = (Vec::new(), 0);
-    for row in order {
-        if rows.len() == count {
-            break;
-        }
-        if receivers[row].sound && !bodies.bury(&receivers[row], &mut rng) {
-            rows.push(row);
-        } else {
-            left_out += 1;
-        }
-    }
-    (rows, left_out)
-}
-
-/// The surfaces that stop light.
-struct Bodies<'a> {
-    scene: &'a Scene,
-    tracer: Tracer,
-    /// Mesh and triangle in it of each traced triangle.
-    parts: Vec<[usize; 2]>,
-}
-
-impl<'a> Bodies<'a> {
-    fn of(scene: &'a Scene) -> Self {
-        let (mut positions, mut triangles, mut masked, mut parts) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (m, mesh) in scene.meshes.iter().enumerate().filter(|(m, _)| scene.material(*m).blocks_rays()) {
-            let first = positions.len() as u32;
-            positions.extend_from_slice(&mesh.positions);
-            triangles.extend(mesh.triangles.iter().map(|t| t.map(|corner| first + corner)));
-            masked.extend(mesh.triangles.iter().map(|_| scene.material(m).is_masked()));
-            parts.extend((0..mesh.triangles.len()).map(|t| [m, t]));
-        }
-        Self { scene, tracer: Tracer::build(&positions, &triangles, &masked), parts }
-    }
-
-    /// Whether a receiver sees mostly the insides of bodies.
-    fn bury(&self, receiver: &Receiver, rng: &mut Rng) -> bool {
-        let origin = offset_origin(receiver.position, receiver.geometric_normal);
-        let frame = Frame::from_normal(receiver.normal);
-        let solid = |t: u32, u: f32, v: f32| {
-            let [mesh, triangle] = self.parts[t as usize];
-            self.scene.coverage(mesh, triangle, u, v) > 0.0
+            (0..n).map(term).sum::<f64>()
         };
-        let (mut blocked, mut inside) = (0.0, 0.0);
-        for _ in 0..PROBES {
-            let direction = frame.to_world(square_to_cosine_concentric(rng.next_square()));
-            if let Some(hit) = self.tracer.closest(&Ray::new(origin, direction), &solid) {
-                let body = !self.scene.material(self.parts[hit.triangle as usize][0]).double_sided;
-                blocked += 1.0;
-                inside += f32::from(u8::from(body && !hit.front));
+        let albedo = transfer.albedo[spot.row].map(f64::from);
+        [0, 1, 2].map(|c| albedo[c] * spot.shares.iter().map(|&(row, share)| share * of_row(row, c)).sum::<f64>())
+    }
+
+    /// Draws a random subset of all receivers.
+    fn draw(&mut self, all: &Receivers, count: usize) {
+        let mut rng = Rng::new(1, 0);
+        let mut order: Vec<usize> = (0..all.permanent).collect();
+        for k in (1..order.len()).rev() {
+            order.swap(k, (rng.next_u64() % (k as u64 + 1)) as usize);
+        }
+        let neighbours = neighbours(all.permanent, &self.prt.geometry.triangles);
+        let solids = Solids::of(&self.scene);
+        for row in order {
+            if self.spots.len() == count {
+                break;
+            }
+            let receiver = all.list[row];
+            if !receiver.sound {
+                self.flat += 1;
+            } else if !solids.bury(&receiver, &mut rng) {
+                self.spots.push(Spot { row, shares: vec![(row, 1.0)], at: receiver });
+            } else if let Some(spot) = come_out(&solids, all, row, &neighbours[row], &mut rng) {
+                self.spots.push(spot);
+                self.moved += 1;
+            } else {
+                self.buried += 1;
             }
         }
-        blocked > BURIED * PROBES as f32 && inside > BURIED * blocked
     }
+}
+
+/// The rows that share an edge with each.
+fn neighbours(rows: usize, triangles: &[[u32; 3]]) -> Vec<Vec<usize>> {
+    let mut found = vec![Vec::new(); rows];
+    for &[a, b, c] in triangles {
+        for [a, b] in [[a, b], [b, c], [c, a]].map(|edge| edge.map(|row| row as usize)) {
+            found[a].push(b);
+            found[b].push(a);
+        }
+    }
+    for list in &mut found {
+        list.sort_unstable();
+        list.dedup();
+    }
+    found
+}
+
+/// The place nearest to a row inside a body where an edge to a neighbour outside comes out of it.
+fn come_out(solids: &Solids<'_>, all: &Receivers, row: usize, around: &[usize], rng: &mut Rng) -> Option<Spot> {
+    let inside = all.list[row];
+    let mut places: BTreeMap<u32, Spot> = BTreeMap::new();
+    for &other in around {
+        let end = all.list[other];
+        if !end.sound || solids.bury(&end, rng) {
+            continue;
+        }
+        let way = inside.position - end.position;
+        let at = |share: f32| Receiver { position: end.position + share * way, ..end };
+        let (mut free, mut buried) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (free + buried);
+            if solids.bury(&at(middle), rng) { buried = middle } else { free = middle }
+        }
+        let shares = vec![(other, 1.0 - f64::from(free)), (row, f64::from(free))];
+        // Distances are not negative, so that their bits are in their order.
+        let distance = (1.0 - free) * way.length();
+        places.entry(distance.to_bits()).or_insert(Spot { row, shares, at: at(free) });
+    }
+    places.into_values().next()
 }
