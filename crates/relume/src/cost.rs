@@ -3,12 +3,14 @@
 use crate::console::Console;
 use crate::lens::{self, Lens};
 use crate::sheets::{PADDING, SMALLEST, SheetChoice, has_normal_maps};
+use crate::silence::silenced;
 use crate::source::{ProbeOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{output, settings};
 use anyhow::{Context, Result};
 use bake::SheetSettings;
 use coeff_io::{Settings, replace};
+use render_wgpu::{Driver, Gpu};
 use scene::Scene;
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -98,6 +100,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         budget: options.budget,
         machine: machine(),
         light_maps: mapped.as_ref().map(|(scene, sheets)| LightMaps { scene, sheet_options: &sheet_options, sheets }),
+        open_gpu: || silenced(|| Gpu::new(Driver::Any)),
     };
     let report = {
         let progress = console.progress();

@@ -231,3 +231,15 @@ fn exports_have_the_shapes_that_they_promise() {
     assert!((first - (4.0 * std::f64::consts::PI).sqrt()).abs() < 1e-3, "{first}");
     assert!(light["coefficients"][3][2].as_f64().unwrap().abs() < 1e-4);
 }
+
+/// Drivers complain on stderr where there is no display; nobody needs one to time frames.
+#[test]
+fn a_study_says_nothing_of_displays() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = ["cost", "builtin:plane", "--probe", "builtin:sky", "-o", "c", "--budget", "1", "--bands", "2"];
+    let mut command = command(folder.path(), &study);
+    command.env_remove("VK_DRIVER_FILES").env_remove("WGPU_BACKEND").env_remove("XDG_RUNTIME_DIR");
+    let output = command.output().unwrap();
+    let said = complaint(&output);
+    assert!(output.status.success() && !said.contains("XDG_RUNTIME_DIR"), "{said}");
+}

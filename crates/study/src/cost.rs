@@ -60,6 +60,8 @@ pub struct Request<'a> {
     pub machine: report::Machine,
     /// Light maps whose bases are to be compared as well; an effect of scenes with normal maps.
     pub light_maps: Option<LightMaps<'a>>,
+    /// Opens the device whose frames are timed; the caller knows what drivers may say meanwhile.
+    pub open_gpu: fn() -> Result<render_wgpu::Gpu, render_wgpu::Error>,
 }
 
 /// What the user wants.

@@ -3,7 +3,7 @@
 use coeff_io::{Prt, Transfer};
 use glam::Quat;
 use probe_io::Environment;
-use render_wgpu::{Driver, Gpu};
+use render_wgpu::Gpu;
 use std::time::Instant;
 
 /// Columns and rows of the pictures.
@@ -43,9 +43,13 @@ pub(super) fn on_cpu(prt: &Prt, environment: &Environment, enough: f64) -> Resul
 ///
 /// # Errors
 /// As the renderer has it; where there is no adapter it says so.
-pub(super) fn on_gpu(prt: &Prt, environment: &Environment, enough: f64) -> Result<Frames, render_wgpu::Error> {
-    let gpu = Gpu::new(Driver::Any)?;
-    let mut renderer = render_wgpu::Renderer::new(&gpu, prt, environment)?;
+pub(super) fn on_gpu(
+    gpu: &Gpu,
+    prt: &Prt,
+    environment: &Environment,
+    enough: f64,
+) -> Result<Frames, render_wgpu::Error> {
+    let mut renderer = render_wgpu::Renderer::new(gpu, prt, environment)?;
     let plain = render_wgpu::Frame::plain(prt.cameras[0].clone(), SIZE[0], SIZE[1]);
     let (milliseconds, count) = median(enough, |turn| {
         let timings = renderer.time(&render_wgpu::Frame { rotation: turn, ..plain.clone() })?;

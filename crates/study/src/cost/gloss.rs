@@ -6,7 +6,6 @@ use super::{Error, Request};
 use bake::{Compression, Extras, SheetSettings, TextureSettings};
 use coeff_io::{Codebook, Effect, GlossView, GlossWay, Prt, Quality, Settings};
 use glam::Quat;
-use render_wgpu::{Driver, Gpu};
 use scene::Scene;
 use scene::lightmap::{ObjectOptions, objects};
 use std::time::Instant;
@@ -233,7 +232,7 @@ fn difference(ours: &[[f32; 3]], truth: &[[f32; 3]]) -> f64 {
 
 /// Milliseconds of every way at vertices and at texels.
 fn ways(request: &Request<'_>, at_vertices: &Prt, at_texels: &Prt) -> Result<Vec<WayTime>, render_wgpu::Error> {
-    let gpu = Gpu::new(Driver::Any)?;
+    let gpu = (request.open_gpu)()?;
     let mut all = Vec::new();
     for (is_vertex, prt) in [(true, at_vertices), (false, at_texels)] {
         if !is_vertex && prt.transfer_textures.is_none() {
@@ -290,6 +289,7 @@ mod tests {
             budget,
             machine: Machine { threads: 1, system: "test".into(), version: "0".into() },
             light_maps: None,
+            open_gpu: || render_wgpu::Gpu::new(render_wgpu::Driver::Any),
         };
         let mut bakes = Bakes::new(&scene, &settings, budget, &|_| ControlFlow::Continue(())).unwrap();
         let mut left_out = Vec::new();

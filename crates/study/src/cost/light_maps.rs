@@ -99,6 +99,7 @@ mod tests {
             budget,
             machine: Machine { threads: 1, system: "test".into(), version: "0".into() },
             light_maps: Some(LightMaps { scene: &scene, sheet_options: "--texels 32", sheets: &sheets }),
+            open_gpu: || render_wgpu::Gpu::new(render_wgpu::Driver::Any),
         };
         let mut bakes = Bakes::new(&scene, &settings, budget, &|_| ControlFlow::Continue(())).unwrap();
         let mut left_out = Vec::new();

@@ -265,7 +265,7 @@ fn time_frames(
         let prt = frames::with_bands(&reference.prt, n);
         timed.push(frames::on_cpu(&prt, request.environment, enough)?);
         if gpu {
-            match frames::on_gpu(&prt, request.environment, enough) {
+            match (request.open_gpu)().and_then(|gpu| frames::on_gpu(&gpu, &prt, request.environment, enough)) {
                 Ok(frames) => timed.push(frames),
                 Err(error) => {
                     left_out.push(format!("frames on a GPU: {error}"));
