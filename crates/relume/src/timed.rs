@@ -33,9 +33,8 @@ const OTHERS: f64 = 4.0;
 const COARSE_RAYS: f64 = 128.0;
 /// Fewest rays for which bounces are worth their time, and for which another result is.
 const FEWEST_RAYS: f64 = 32.0;
-/// Rays of a receiver while triangles are split, about, and by how much receivers grow.
-const REFINEMENT_RAYS: f64 = 256.0;
-const REFINED: f64 = 1.5;
+/// Time that must be left for splitting the triangles and a coarse bake of them, in that of a coarse bake of the triangles as they are.
+const SPLITTING: f64 = 4.0;
 
 /// A finished bake: the error that it kept, asked for or better, and the seconds that it took, all of them and before the first ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,12 +62,6 @@ pub(crate) fn bake(
     let (mut best, rung) = ladder.step(scene, &first)?;
     let mut speed = Speed::of(&first, rung, receivers(scene));
     let mut scene = std::borrow::Cow::Borrowed(scene);
-    if settings.refine != Refine::Off && speed.refined(settings, receivers(&scene)) < SHARE * ladder.left() {
-        let fine = bake::refine_watched(&scene, settings, &watched(&console.progress())).map_err(fault)?;
-        if speed.coarse(settings, receivers(&fine)) < SHARE * ladder.left() {
-            scene = std::borrow::Cow::Owned(fine.into_owned());
-        }
-    }
     let (mut before, mut rungs) = (first, Vec::new());
     while rungs.is_empty() {
         let Some(wanted) = coarser(&before, settings, speed, receivers(&scene), ladder.left()) else { return Ok(best) };
@@ -79,6 +72,19 @@ pub(crate) fn bake(
             rungs.push(rung);
         }
         before = wanted;
+    }
+    if let [rung] = rungs[..]
+        && settings.refine != Refine::Off
+        && SPLITTING * rung.seconds < ladder.left()
+    {
+        let fine = bake::refine_watched(&scene, settings, &watched(&console.progress())).map_err(fault)?;
+        if speed.coarse(settings, receivers(&fine)) < SHARE * ladder.left() {
+            let wanted = Settings { quality: Quality::Error(COARSEST), ..settings.clone() };
+            let rung;
+            (best, rung) = ladder.step(&fine, &wanted)?;
+            rungs = vec![rung];
+            scene = std::borrow::Cow::Owned(fine.into_owned());
+        }
     }
     while !exhausted(&best) {
         let Some(error) = next(&rungs, ladder.left()) else { break };
@@ -116,11 +122,6 @@ impl Speed {
 
     fn coarse(self, settings: &Settings, receivers: f64) -> f64 {
         self.seconds(COARSE_RAYS, settings.bounces, receivers)
-    }
-
-    /// Seconds that splitting the triangles and a coarse bake of them should take.
-    fn refined(self, settings: &Settings, receivers: f64) -> f64 {
-        self.seconds(REFINEMENT_RAYS, Bounces::Fixed(0), receivers) + self.coarse(settings, REFINED * receivers)
     }
 
     /// Rays per receiver of a bake in so many seconds.
