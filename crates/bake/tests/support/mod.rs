@@ -17,8 +17,6 @@ pub(crate) fn grey(name: &str, a: f32) -> Scene {
         material.base_color_texture = None;
         material.metallic_roughness_texture = None;
         material.metallic = 0.0;
-        // glTF's smooth dielectrics return more than all of a white sky at albedo 1.
-        material.roughness = 1.0;
     }
     scene.meshes.iter_mut().for_each(|m| m.colors.clear());
     scene

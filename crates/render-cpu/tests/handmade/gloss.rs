@@ -141,7 +141,7 @@ pub(crate) fn fine_wall(material: Material, cells: u32) -> Prt {
     let corner = |cell: u32| cell / cells * side + cell % cells;
     let of_cell = |a: u32| [[a, a + 1, a + 1 + side], [a, a + 1 + side, a + side]];
     geometry.triangles = (0..cells * cells).flat_map(|cell| of_cell(corner(cell))).collect();
-    prt.transfer.values = vec![0.0; 4 * (side * side) as usize];
+    prt.transfer.values = open_transfer(Vec3::Z).repeat((side * side) as usize);
     prt.transfer.albedo = vec![[1.0; 3]; (side * side) as usize];
     prt.meshes[0].vertices = side * side;
     prt.meshes[0].triangles = 2 * cells * cells;
