@@ -117,15 +117,15 @@ fn merge(row: &mut Vec<Sender>) {
     // With its place behind the key each is one of a kind, and of one key the order of the sums is that of the rays.
     let mut order: Vec<u64> = (0..).zip(&*row).map(|(place, sender)| u64::from(sender.key) << 32 | place).collect();
     order.sort_unstable();
-    let mut merged: Vec<Sender> = Vec::with_capacity(row.len());
-    for place in order {
-        let next = row[place as u32 as usize];
-        match merged.last_mut().filter(|kept| kept.key == next.key) {
-            Some(kept) => kept.weight.iter_mut().zip(next.weight).for_each(|(sum, more)| *sum += more),
-            None => merged.push(next),
-        }
-    }
-    *row = merged;
+    let sum = |same: &[u64]| {
+        let mut senders = same.iter().map(|&place| row[place as u32 as usize]);
+        let first = senders.next().expect("no group is empty");
+        senders.fold(first, |mut sum, next| {
+            sum.weight.iter_mut().zip(next.weight).for_each(|(sum, more)| *sum += more);
+            sum
+        })
+    };
+    *row = order.chunk_by(|a, b| a >> 32 == b >> 32).map(sum).collect();
 }
 
 #[cfg(test)]
