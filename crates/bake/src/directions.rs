@@ -199,10 +199,16 @@ impl DirectionSet {
         self.steps.push(Step { end, weight, samples: samples as f64, full });
     }
 
-    /// Basis function times weight of the directions of one step, coefficient by coefficient.
-    pub(crate) fn basis(&self, step: std::ops::Range<usize>) -> impl Iterator<Item = &[f32]> {
-        let coefficients = self.steps[0].full.len();
-        self.basis[coefficients * step.start..coefficients * step.end].chunks_exact(step.len().max(1))
+    /// The directions of a step.
+    pub(crate) fn range(&self, step: usize) -> std::ops::Range<usize> {
+        let start = step.checked_sub(1).map_or(0, |before| self.steps[before].end);
+        start..self.steps[step].end
+    }
+
+    /// Basis function times weight of the directions of a step, coefficient by coefficient.
+    pub(crate) fn basis(&self, step: usize) -> impl Iterator<Item = &[f32]> {
+        let (range, coefficients) = (self.range(step), self.steps[step].full.len());
+        self.basis[coefficients * range.start..coefficients * range.end].chunks_exact(range.len().max(1))
     }
 }
 

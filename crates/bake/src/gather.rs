@@ -159,7 +159,7 @@ impl Gatherer<'_> {
             worker.choice.choose(&set.surroundings, start..step.end, turn, &mut worker.blocked);
             seen.rays += self.trace_step(origin, start..step.end, worker);
             let open = &worker.open[start..];
-            add_open(set, start..step.end, open, &mut sums);
+            add_open(set, number, open, &mut sums);
             open_weight += dot(&set.weights[start..step.end], open);
             start = step.end;
             seen.step = number;
@@ -388,8 +388,8 @@ fn rotate_directions(set: &DirectionSet, frame: &Mat3, end: usize, world: &mut [
 }
 
 /// Adds the basis of the open directions of a step to the sums.
-fn add_open(set: &DirectionSet, range: std::ops::Range<usize>, open: &[f32], sums: &mut [f64]) {
-    for (sum, basis) in sums.iter_mut().zip(set.basis(range)) {
+fn add_open(set: &DirectionSet, step: usize, open: &[f32], sums: &mut [f64]) {
+    for (sum, basis) in sums.iter_mut().zip(set.basis(step)) {
         *sum += dot(basis, open);
     }
 }

@@ -53,7 +53,7 @@ fn what_cannot_be_is_refused() {
     let folder = folder.path();
     for (arguments, reason) in [
         (&["bases"][..], "--output"),
-        (&["bases", "-o", "out", "--signals", "1"], "2..=10000000"),
+        (&["bases", "-o", "out", "--signals", "1"], "from 2 to 10000000"),
         (&["bases", "-o", "out", "--seed", "x"], "--seed"),
     ] {
         let output = relume(folder, arguments);

@@ -50,9 +50,9 @@ impl Gatherer<'_> {
 
     /// Open share, and direct transfer in the local frame, of one channel.
     fn channel(&self, set: &DirectionSet, step: usize, open: &[f32]) -> (f64, Vec<f64>) {
-        let step = &set.steps[step];
         let mut sums = vec![0.0f64; self.bands.coefficients()];
-        add_open(set, 0..step.end, open, &mut sums);
+        (0..=step).for_each(|number| add_open(set, number, &open[set.range(number)], &mut sums));
+        let step = &set.steps[step];
         let openness = dot(&set.weights[..step.end], open) / step.weight;
         (openness, self.corrected(&sums, openness, step))
     }
