@@ -15,7 +15,7 @@ use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
 use glam::Vec3;
 use rayon::prelude::*;
-use raytrace::{Ray, offset_origin};
+use raytrace::Ray;
 use sampling::frame::Frame;
 use scene::{Mesh, Scene};
 use sh_math::Bands;
@@ -89,7 +89,9 @@ impl<'a> Bends<'a> {
                 continue;
             }
             self.look_from_ends(scene, index, ends, (total, monitor))?;
-            let receivers: Vec<Receiver> = new.iter().map(|(edge, sums)| sums.receiver(mesh, *edge, 0.5)).collect();
+            let extent = self.world.extents[index];
+            let receivers: Vec<Receiver> =
+                new.iter().map(|(edge, sums)| sums.receiver(mesh, *edge, 0.5).of_extent(extent)).collect();
             let looks = self.look(&receivers, two_sided(scene, index), (Some(total), monitor))?;
             let bend = self.bending(index, mesh, two_sided(scene, index), &new, (&receivers, &looks));
             let mut steep = Vec::new();
@@ -125,7 +127,8 @@ impl<'a> Bends<'a> {
             let ends = edge.map(|v| mesh.positions[v as usize]);
             let normals = || sides.iter().map(|side| side * receiver.geometric_normal);
             self.bend(index, *edge, 0.5, look) > BEND
-                || self.bounces && normals().any(|normal| ledge::fades(&gatherer, ends, normal, worker))
+                || self.bounces
+                    && normals().any(|normal| ledge::fades(&gatherer, ends, (normal, receiver.rounding), worker))
         };
         new.par_iter().zip(seen.0).zip(seen.1).map_init(Worker::new, bends).collect()
     }
@@ -150,7 +153,7 @@ impl<'a> Bends<'a> {
         });
         for share in [0.25, 0.75] {
             let unsure: Vec<usize> = (0..steep.len()).filter(|&k| steep[k].bend <= steep[k].threshold).collect();
-            let at = |&k: &usize| steep[k].sums.receiver(mesh, steep[k].edge, share);
+            let at = |&k: &usize| steep[k].sums.receiver(mesh, steep[k].edge, share).of_extent(faces.extent);
             let receivers: Vec<Receiver> = unsure.iter().map(at).collect();
             let looks = self.look(&receivers, two_sided(scene, index), (None, monitor))?;
             for (k, look) in unsure.into_iter().zip(looks) {
@@ -162,7 +165,7 @@ impl<'a> Bends<'a> {
 
     /// Whether most of three rays from a receiver meet a body from within.
     fn is_buried(&self, receiver: &Receiver) -> bool {
-        let origin = offset_origin(receiver.position, receiver.geometric_normal);
+        let origin = self.world.start(receiver.position, receiver.geometric_normal, receiver.rounding);
         let frame = Frame::from_normal(receiver.normal);
         let meets_inside = |way: &[f32; 3]| {
             let ray = Ray::new(origin, frame.to_world(Vec3::from_array(*way)));
@@ -295,7 +298,9 @@ const TRIPOD: [[f32; 3]; 3] = [[0.707, 0.0, 0.707], [-0.354, 0.612, 0.707], [-0.
 /// The receiver of a vertex of a mesh.
 fn at_vertex(mesh: &Mesh, faces: &FaceSums, vertex: u32) -> Receiver {
     let v = vertex as usize;
-    Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v)).0
+    Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v))
+        .0
+        .of_extent(faces.extent)
 }
 
 fn two_sided(scene: &Scene, mesh: usize) -> bool {

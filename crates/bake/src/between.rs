@@ -1,16 +1,17 @@
 //! The error of transfer between receivers, where renderers interpolate it: measured at points of the surfaces.
 
+use crate::Error;
 use crate::field::Field;
 use crate::gather::{Gathered, Gatherer, Worker};
 use crate::passes::Monitor;
 use crate::progress::Stage;
 use crate::receivers::{Receiver, Receivers};
 use crate::repair::is_inside;
-use crate::{Error, world};
+use crate::world::{World, receiver_on};
 use coeff_io::{Achieved, Quality};
 use rayon::prelude::*;
 use sampling::rng::{Rng, hash};
-use scene::{AlphaMode, Scene};
+use scene::AlphaMode;
 
 /// Of so many receivers one point is measured; each is looked from twice, with fewer rays.
 const PART: usize = 64;
@@ -48,9 +49,8 @@ pub(crate) fn measure(
     if !gatherer.visibility {
         return Ok(());
     }
-    let scene = gatherer.world.scene;
     let count = (receivers.vertices / PART).clamp(COUNT[0], COUNT[1]);
-    let points: Vec<Point> = points(scene, receivers, seed, count);
+    let points: Vec<Point> = points(gatherer.world, receivers, seed, count);
     let quality = match gatherer.quality {
         Quality::Error(asked) => Quality::Error(asked.max(COARSE)),
         rays @ Quality::Rays(_) => rays,
@@ -83,7 +83,8 @@ pub(crate) fn measure(
 }
 
 /// Random points on the fronts of all surfaces that show light.
-fn points(scene: &Scene, receivers: &Receivers, seed: u64, count: usize) -> Vec<Point> {
+fn points(world: &World<'_>, receivers: &Receivers, seed: u64, count: usize) -> Vec<Point> {
+    let scene = world.scene;
     let mut ends = Vec::new();
     let mut first = 0;
     let mut total = 0.0;
@@ -119,7 +120,7 @@ fn points(scene: &Scene, receivers: &Receivers, seed: u64, count: usize) -> Vec<
         let corners = mesh.triangles[t].map(|v| v + first);
         let shows = corners.iter().all(|&c| !receivers.list[c as usize].dark && receivers.list[c as usize].sound);
         (solid && shows).then(|| Point {
-            receiver: world::receiver_on(mesh, t, [u, v]),
+            receiver: receiver_on(mesh, t, [u, v]).of_extent(world.extents[m]),
             corners,
             shares: [1.0 - u - v, u, v],
             weight: even / (0.5 * even + 0.5 * single),

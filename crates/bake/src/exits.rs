@@ -14,7 +14,7 @@ use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
 use glam::Vec3;
 use rayon::prelude::*;
-use raytrace::{Ray, offset_origin};
+use raytrace::Ray;
 use sampling::frame::Frame;
 use scene::{Mesh, Scene};
 use sh_math::Bands;
@@ -66,8 +66,10 @@ pub(crate) fn cut_at_exits<'a>(
 /// Finds the exits of a mesh that are worth a vertex.
 fn add_cuts(mesh: &Mesh, gatherer: &Gatherer<'_>, cuts: &mut Cuts) {
     let faces = FaceSums::of(mesh);
-    let receiver =
-        |v: usize| Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v)).0;
+    let receiver = |v: usize| {
+        let shading = mesh.normals.get(v).copied();
+        Receiver::new(mesh.positions[v], shading, faces.normal[v], faces.centre(v)).0.of_extent(faces.extent)
+    };
     let inside: Vec<bool> = (0..mesh.positions.len())
         .into_par_iter()
         .map_init(Worker::new, |worker, v| is_stuck(gatherer, &receiver(v), worker))
@@ -100,7 +102,8 @@ fn add_cuts(mesh: &Mesh, gatherer: &Gatherer<'_>, cuts: &mut Cuts) {
 
 /// Whether a receiver stands inside a body: three rays rule out most.
 fn is_stuck(gatherer: &Gatherer<'_>, receiver: &Receiver, worker: &mut Worker) -> bool {
-    let (origin, world) = (offset_origin(receiver.position, receiver.geometric_normal), gatherer.world);
+    let world = gatherer.world;
+    let origin = world.start(receiver.position, receiver.geometric_normal, receiver.rounding);
     let frame = Frame::from_normal(receiver.normal);
     let meets_inside = |way: [f32; 3]| {
         let ray = Ray::new(origin, frame.to_world(Vec3::from(way)));

@@ -15,7 +15,7 @@ use crate::receivers::Receiver;
 use crate::world::World;
 use coeff_io::Quality;
 use glam::{Mat3, Vec3};
-use raytrace::{Hit, offset_origin};
+use raytrace::Hit;
 use sampling::estimate::{Doubling, Verdict};
 use sampling::frame::Frame;
 use sh_math::{Bands, rotate::Rotation};
@@ -95,7 +95,7 @@ impl Gatherer<'_> {
         if !(self.visibility && (in_space || self.world.can_shadow(receiver))) {
             return (self.unshadowed(receiver), 0);
         }
-        let origin = offset_origin(receiver.position, receiver.geometric_normal);
+        let origin = self.world.start(receiver.position, receiver.geometric_normal, receiver.rounding);
         let (set, turn) = self.bank.pick(index);
         let world_from_local = turned_frame(receiver.normal, turn);
         let seen = self.trace_visibility(origin, set, &world_from_local, index, worker);
@@ -284,7 +284,7 @@ impl Gatherer<'_> {
         openness: f32,
         worker: &mut Worker,
     ) -> Blockers {
-        let origin = offset_origin(receiver.position, receiver.geometric_normal);
+        let origin = self.world.start(receiver.position, receiver.geometric_normal, receiver.rounding);
         let (set, _) = self.bank.pick(index);
         let rays = self.trace_blockers(origin, set.steps[step].end, index, worker);
         if let Some(layer) = &self.world.translucent {

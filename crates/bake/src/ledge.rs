@@ -8,7 +8,7 @@ use crate::hit::NearPoint;
 use crate::plan::allowed;
 use coeff_io::{Bounces, Effect, Settings};
 use glam::Vec3;
-use raytrace::{Hit, Ray, offset_origin};
+use raytrace::{Hit, Ray};
 
 /// Where rays towards the surface at the foot of an edge start, and how far before the foot they aim, in lengths of the edge. The first looks
 /// at what lies there, the second at what lies where that must still be, lest its light bends by more than a tenth of itself in the middle.
@@ -23,15 +23,21 @@ pub(crate) fn matters(settings: &Settings) -> bool {
     settings.bounces != Bounces::Fixed(0) && allowed(settings, Effect::Interreflection)
 }
 
-/// Whether bounced light bends along an edge, on the side of the surface that the normal points to; `gatherer` takes a quick look at direct light.
-pub(crate) fn fades(gatherer: &Gatherer<'_>, [a, b]: [Vec3; 2], normal: Vec3, worker: &mut Worker) -> bool {
-    fades_from(gatherer, a, b, normal, worker) || fades_from(gatherer, b, a, normal, worker)
+/// Whether bounced light bends along an edge, on the side of the surface that the normal points to, which may be off its plane by `rounding` metres;
+/// `gatherer` takes a quick look at direct light.
+pub(crate) fn fades(gatherer: &Gatherer<'_>, [a, b]: [Vec3; 2], side: (Vec3, f32), worker: &mut Worker) -> bool {
+    fades_from(gatherer, [a, b], side, worker) || fades_from(gatherer, [b, a], side, worker)
 }
 
-fn fades_from(gatherer: &Gatherer<'_>, foot: Vec3, end: Vec3, normal: Vec3, worker: &mut Worker) -> bool {
+fn fades_from(
+    gatherer: &Gatherer<'_>,
+    [foot, end]: [Vec3; 2],
+    (normal, rounding): (Vec3, f32),
+    worker: &mut Worker,
+) -> bool {
     let (world, way) = (gatherer.world, end - foot);
     let look = |[along, before]: [f32; 2], t_max: f32| {
-        let start = offset_origin(foot + along * way, normal);
+        let start = world.start(foot + along * way, normal, rounding);
         let direction = foot + before * way.length() * normal - start;
         world.closest(&Ray { t_max, ..Ray::new(start, direction) })
     };

@@ -52,6 +52,7 @@ mod series;
 pub mod settings;
 mod small;
 mod split;
+mod start;
 mod storage;
 mod summary;
 mod survey;

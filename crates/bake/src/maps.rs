@@ -250,7 +250,8 @@ pub(crate) fn receiver(done: &Done<'_>, texel: &Texel) -> Receiver {
     // About the first corner: far from the origin sums of positions would lose digits.
     let centre = a + ((b - a) + (c - a)) / 3.0;
     let at = a + u * (b - a) + v * (c - a);
-    Receiver::new(at, Some(mesh.normal(triangle, u, v)), (b - a).cross(c - a), centre).0
+    let receiver = Receiver::new(at, Some(mesh.normal(triangle, u, v)), (b - a).cross(c - a), centre).0;
+    receiver.of_extent(done.gatherer.world.extents[texel.mesh as usize])
 }
 
 /// What arrives at every point, in their order.

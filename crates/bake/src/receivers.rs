@@ -1,5 +1,6 @@
 //! Where transfer is computed: the vertices of the scene, and the backs of two-sided surfaces.
 
+use crate::start::{extent, rounding};
 use glam::Vec3;
 use scene::{Mesh, Scene};
 
@@ -21,6 +22,8 @@ pub struct Receiver {
     pub sound: bool,
     /// Whether its surface neither scatters nor mirrors light, so that what arrives shows nowhere; set by the plan.
     pub dark: bool,
+    /// How far rounding may put the surface off its plane, metres.
+    pub rounding: f32,
 }
 
 /// All receivers of a scene. Vertex `v` of the flattened scene is receiver `v`.
@@ -96,7 +99,7 @@ impl Receivers {
             let at = mesh.positions[vertex];
             let (receiver, replaced) = Receiver::new(at, shading, faces.normal[vertex], faces.centre(vertex));
             self.replaced_normals += usize::from(replaced);
-            self.list.push(receiver);
+            self.list.push(receiver.of_extent(faces.extent));
         }
     }
 }
@@ -120,8 +123,14 @@ impl Receiver {
             geometric_normal,
             sound: shading.is_some() || geometric.is_some(),
             dark: false,
+            rounding: rounding(at.abs(), geometric_normal),
         };
         (receiver, replaced)
+    }
+
+    /// The same on a mesh with these largest coordinates, from whose corners the point comes.
+    pub(crate) fn of_extent(self, extent: Vec3) -> Self {
+        Self { rounding: rounding(extent, self.geometric_normal), ..self }
     }
 
     /// The same point of the surface seen from behind.
@@ -156,6 +165,7 @@ pub(crate) struct FaceSums {
     centre: Vec<Vec3>,
     area: Vec<f32>,
     positions: Vec<Vec3>,
+    pub(crate) extent: Vec3,
 }
 
 impl FaceSums {
@@ -165,6 +175,7 @@ impl FaceSums {
             normal: vec![Vec3::ZERO; n],
             centre: vec![Vec3::ZERO; n],
             area: vec![0.0; n],
+            extent: extent(mesh),
             positions: mesh.positions.clone(),
         };
         for triangle in &mesh.triangles {

@@ -148,5 +148,13 @@ impl Probes<'_> {
 
 /// A receiver that belongs to no surface.
 fn in_space(at: Vec3) -> Receiver {
-    Receiver { position: at, vertex: at, normal: Vec3::Y, geometric_normal: Vec3::ZERO, sound: true, dark: false }
+    Receiver {
+        position: at,
+        vertex: at,
+        normal: Vec3::Y,
+        geometric_normal: Vec3::ZERO,
+        sound: true,
+        dark: false,
+        rounding: 0.0,
+    }
 }

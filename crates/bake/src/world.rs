@@ -5,6 +5,7 @@ use crate::bodies::Bodies;
 use crate::cells::Cells;
 use crate::hit::NearPoint;
 use crate::receivers::Receiver;
+use crate::start;
 use crate::transmittance::Translucent;
 use glam::Vec3;
 use raytrace::{Hit, Ray, Tracer};
@@ -20,6 +21,10 @@ const MAX_VERTICES: usize = (1 << 29) - 1;
 pub(crate) struct World<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) tracer: Tracer,
+    /// Largest coordinates of each mesh by amount.
+    pub(crate) extents: Vec<Vec3>,
+    /// The same of all that rays meet.
+    pub(crate) extent: Vec3,
     /// Of each traced triangle: its corners as vertices of the whole scene.
     pub(crate) corners: Vec<[u32; 3]>,
     /// Of each traced triangle: its mesh and its index within the mesh.
@@ -68,6 +73,8 @@ impl<'a> World<'a> {
         let mut world = Self {
             scene,
             tracer: Tracer::build(&[], &[], &[]),
+            extents: scene.meshes.iter().map(start::extent).collect(),
+            extent: Vec3::ZERO,
             corners: Vec::new(),
             sources: Vec::new(),
             translucent: None,
@@ -87,6 +94,7 @@ impl<'a> World<'a> {
             if !blocks(mesh.material as usize) {
                 continue;
             }
+            world.extent = world.extent.max(world.extents[m]);
             let has_mask = tested(mesh.material as usize);
             world.has_masks |= has_mask;
             for (t, corners) in mesh.triangles.iter().enumerate() {
@@ -111,6 +119,7 @@ impl<'a> World<'a> {
         let mut first = 0;
         for (m, mesh) in self.scene.meshes.iter().enumerate() {
             if is_translucent(mesh.material as usize) {
+                self.extent = self.extent.max(self.extents[m]);
                 let own = positions.len() as u32;
                 positions.extend_from_slice(&mesh.positions);
                 corners.extend(mesh.triangles.iter().map(|corners| corners.map(|v| v + own)));
@@ -235,7 +244,7 @@ impl<'a> World<'a> {
     /// A receiver at a point of a traced triangle, on one side.
     pub(crate) fn receiver_at(&self, point: &NearPoint) -> Receiver {
         let (mesh, local) = self.locate(point.triangle);
-        let receiver = receiver_on(&self.scene.meshes[mesh], local, point.barycentrics);
+        let receiver = receiver_on(&self.scene.meshes[mesh], local, point.barycentrics).of_extent(self.extents[mesh]);
         if point.front { receiver } else { receiver.back() }
     }
 
