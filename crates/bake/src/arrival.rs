@@ -99,6 +99,8 @@ pub(crate) struct Arrival {
     pub(crate) inside_share: f32,
     /// Share of the others that meets the back of a surface with one side.
     pub(crate) behind_share: f32,
+    /// Height of what covers the point; infinite where nothing does.
+    pub(crate) cover: f32,
     /// Estimated error of the irradiance in 3 bands, against that of an open point.
     pub(crate) error: f32,
     /// Any-hit rays traced.
@@ -192,6 +194,7 @@ impl<'a> Arrivals<'a> {
             openness: direct.openness,
             inside_share: 0.0,
             behind_share: 0.0,
+            cover: f32::INFINITY,
             error: direct.error,
             visibility_rays: direct.visibility_rays,
             bounce_rays: 0,
@@ -204,6 +207,7 @@ impl<'a> Arrivals<'a> {
             let blockers = self.gatherer.blockers(receiver, index, step, direct.openness, worker);
             arrival.inside_share = blockers.inside_share;
             arrival.behind_share = blockers.behind_share;
+            arrival.cover = blockers.cover;
             arrival.bounce_rays = blockers.rays;
             if self.gatherer.hits && !blockers.found.is_empty() {
                 let open = self.gatherer.bank.domain.open_about(self.functions, receiver.normal);

@@ -1,8 +1,10 @@
 //! What one receiver sees: its direct transfer, and the surfaces that block its view.
 
+mod blockers;
 mod translucent;
 mod worker;
 
+pub(crate) use blockers::Blockers;
 pub(crate) use worker::Worker;
 
 use crate::directions::{DirectionBank, DirectionSet, Step};
@@ -308,9 +310,11 @@ impl Gatherer<'_> {
         let behind = sum(&|hit| !hit.front && !self.world.is_two_sided(hit.triangle));
         let [xs, ys, zs] = &worker.directions;
         let direction = |j: usize| Vec3::new(xs[j], ys[j], zs[j]);
+        let ends = found.iter().map(|(j, hit, weight)| (direction(*j), hit.t, *weight));
+        let cover = blockers::cover(ends, receiver.geometric_normal, total / (1.0 - f64::from(openness)));
         let found = found.into_iter().map(|(j, hit, weight)| (direction(j), hit, (weight * scale) as f32));
         let [inside_share, behind_share] = [inside, behind].map(|sum| (sum / total) as f32);
-        Blockers { rays, inside_share, behind_share, found: found.collect(), filters: Vec::new() }
+        Blockers { rays, inside_share, behind_share, cover, found: found.collect(), filters: Vec::new() }
     }
 
     fn pack(&self, blockers: Blockers, index: u32, out: &mut Gathered) {
@@ -345,21 +349,6 @@ const CROSSED: usize = 8;
 
 /// Changes of the estimate that count for its error. More would lean on how errors fell when the directions were few.
 const REMEMBERED: usize = 4;
-
-/// The surfaces that block directions.
-#[derive(Debug, Default)]
-pub(crate) struct Blockers {
-    /// Closest-hit rays traced.
-    pub(crate) rays: u64,
-    /// Share of them that meets the inside of a body.
-    pub(crate) inside_share: f32,
-    /// Share of them that meets the back of a surface with one side, of a body or not; not told where some surfaces are translucent.
-    pub(crate) behind_share: f32,
-    /// World directions, what they meet, and their weights, which sum to what is not open.
-    pub(crate) found: Vec<(Vec3, Hit, f32)>,
-    /// Of each: the factor of its light on the way through translucent surfaces, RGB; empty where there are none.
-    pub(crate) filters: Vec<Vec3>,
-}
 
 /// What the any-hit rays found, in the local frame.
 struct Seen {

@@ -6,7 +6,7 @@
 mod check;
 mod directional;
 mod frame;
-mod hidden;
+pub(crate) mod hidden;
 mod join;
 pub(crate) mod plate;
 mod stitch;
@@ -22,6 +22,7 @@ use crate::receivers::{Receiver, morton_order};
 use crate::repair::is_inside;
 use coeff_io::{Coding, Effect, Effort, Encoded, Encoding, Layers, MapLight, MapRecord, Maps, Prt, Sheet, curves};
 use frame::{Converter, TangentFrame};
+use glam::Vec2;
 use hidden::{Hidden, is_hidden};
 use plate::Plate;
 use rayon::prelude::*;
@@ -92,7 +93,7 @@ struct Gathered {
     frames: Vec<TangentFrame>,
     /// The same: estimated error.
     errors: Vec<f32>,
-    /// Texels inside of bodies.
+    /// Texels inside of bodies, and hidden ones.
     inside: Vec<Texel>,
     /// Texels that no view shows, with what arrives there.
     hidden: Vec<Hidden>,
@@ -142,7 +143,8 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     }
     for gathered in &mut sheets {
         done.monitor.check()?;
-        gathered.mend(shape);
+        // Where a whole chart is hidden the vertices tell.
+        hidden::mend(&mut gathered.plate, std::mem::take(&mut gathered.hidden));
         gathered.record.unfilled = gathered.fill_from_vertices(done, shape) as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
     }
@@ -208,9 +210,10 @@ fn gather(
             inside.push(*texel);
             continue;
         }
-        if is_hidden(&arrival) {
+        if is_hidden(&arrival, extent(done, texel, [sheet.width, sheet.height])) {
             plate.owner[place] = chart;
-            hidden.push(Hidden { texel: *texel, place, row: arrival.values });
+            hidden.push(Hidden { place, row: arrival.values });
+            inside.push(*texel);
             continue;
         }
         plate.add_slot(place, chart);
@@ -252,6 +255,15 @@ pub(crate) fn receiver(done: &Done<'_>, texel: &Texel) -> Receiver {
     let at = a + u * (b - a) + v * (c - a);
     let receiver = Receiver::new(at, Some(mesh.normal(triangle, u, v)), (b - a).cross(c - a), centre).0;
     receiver.of_extent(done.gatherer.world.extents[texel.mesh as usize])
+}
+
+/// How large a texel is on its surface: the side of a square.
+pub(crate) fn extent(done: &Done<'_>, texel: &Texel, [width, height]: [u32; 2]) -> f32 {
+    let mesh = &done.scene.meshes[texel.mesh as usize];
+    let corners = mesh.triangles[texel.triangle as usize].map(|vertex| vertex as usize);
+    let [a, b, c] = corners.map(|vertex| mesh.positions[vertex]);
+    let [p, q, r] = corners.map(|vertex| mesh.uv1[vertex] * Vec2::new(width as f32, height as f32));
+    ((b - a).cross(c - a).length() / (q - p).perp_dot(r - p).abs()).sqrt()
 }
 
 /// What arrives at every point, in their order.

@@ -1,8 +1,8 @@
-//! Texels under shells that are drawn from outside alone: their dark is not seen, and does not reach what is.
+//! Texels under shells that are drawn from outside alone, and in gaps lower than themselves: their dark is not seen, and does not reach what is.
 
 mod support;
 
-use bake::{Extras, MapSettings, SheetSettings};
+use bake::{Extras, MapSettings, SheetSettings, TextureSettings};
 use coeff_io::{Encoding, Prt, Sampler};
 use glam::{Vec2, Vec3};
 use scene::{AlphaMode, Material, Mesh, Scene};
@@ -18,21 +18,28 @@ fn baked(scene: &Scene, sheet: SheetSettings) -> Prt {
     bake::bake_with(scene, &settings, &extras, &|_| ControlFlow::Continue(())).expect("it bakes")
 }
 
+fn quad(corner: Vec3, along: Vec3, up: Vec3) -> Mesh {
+    let normal = along.cross(up).normalize();
+    Mesh {
+        positions: vec![corner, corner + along, corner + along + up, corner + up],
+        normals: vec![normal; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+/// A square of ground of 2 m, with texels of 10 cm.
+fn ground() -> (Mesh, SheetSettings) {
+    let uv1 = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from_array).to_vec();
+    let ground = Mesh { uv1, ..quad(Vec3::new(-1.0, 0.0, 1.0), Vec3::X * 2.0, Vec3::NEG_Z * 2.0) };
+    (ground, SheetSettings { meshes: vec![0], width: 20, height: 20, directional: false })
+}
+
 /// A square of ground of 20 by 20 texels, with a box without bottom over a part of it whose wall stands between the middles of two texels.
 fn shell_on_ground(double_sided: bool) -> (Scene, SheetSettings) {
-    let quad = |corner: [f32; 3], along: [f32; 3], up: [f32; 3]| {
-        let [corner, along, up] = [corner, along, up].map(Vec3::from_array);
-        let normal = along.cross(up).normalize();
-        Mesh {
-            positions: vec![corner, corner + along, corner + along + up, corner + up],
-            normals: vec![normal; 4],
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-            ..Mesh::default()
-        }
-    };
-    let mut ground = quad([-1.0, 0.0, 1.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0]);
-    ground.uv1 = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from_array).to_vec();
-    let (x, y, z) = ([0.87, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.8]);
+    let (ground, sheet) = ground();
+    let quad = |corner: [f32; 3], along: Vec3, up: Vec3| quad(Vec3::from_array(corner), along, up);
+    let (x, y, z) = (Vec3::X * 0.87, Vec3::Y, Vec3::Z * 1.8);
     let mut meshes = vec![
         ground,
         quad([0.03, 0.0, -0.9], z, y),
@@ -44,22 +51,33 @@ fn shell_on_ground(double_sided: bool) -> (Scene, SheetSettings) {
     meshes[1..].iter_mut().for_each(|mesh| mesh.material = 1);
     let shell = Material { alpha: AlphaMode::Mask(0.5), double_sided, ..Material::default() };
     let scene = Scene { meshes, materials: vec![Material::default(), shell], ..Scene::default() };
-    (scene, SheetSettings { meshes: vec![0], width: 20, height: 20, directional: false })
+    (scene, sheet)
 }
 
 /// Light on the ground before the wall, as a filter between texels finds it, at 1 cm and at 4 cm from the wall.
 fn before_the_wall(double_sided: bool) -> [f32; 2] {
     let (scene, sheet) = shell_on_ground(double_sided);
-    let prt = baked(&scene, sheet);
+    at_the_wall(&row_of_map(&scene, sheet))
+}
+
+/// What white light brings to the middle row of texels of a light map.
+fn row_of_map(scene: &Scene, sheet: SheetSettings) -> Vec<f32> {
+    let side = sheet.width as usize;
+    let prt = baked(scene, sheet);
     let maps = prt.maps.as_ref().expect("maps were asked for");
     let mut white = vec![[0.0; 3]; 4];
     white[0] = [(4.0 * std::f32::consts::PI).sqrt(); 3];
     let values = maps.sheets[0].lit(maps, &white).functions.remove(0);
-    let texel = |column: usize| maps.basis.reconstruct(&[values[10 * 20 + column]], Vec3::Z)[0];
+    let texel = |column: usize| maps.basis.reconstruct(&[values[side / 2 * side + column]], Vec3::Z)[0];
+    (0..side).map(texel).collect()
+}
+
+/// What a filter between texels finds at 1 cm and at 4 cm before a wall at 3 cm, by the texels of a row.
+fn at_the_wall(row: &[f32]) -> [f32; 2] {
     // The middles of columns 9 and 10 lie at -0.05 and 0.05.
     [0.02f32, -0.01].map(|x| {
         let share = (x + 0.05) / 0.1;
-        (1.0 - share) * texel(9) + share * texel(10)
+        (1.0 - share) * row[9] + share * row[10]
     })
 }
 
@@ -76,4 +94,71 @@ fn the_dark_under_a_shell_stays_there() {
 #[test]
 fn the_dark_under_a_shell_stays_there_can_fail() {
     assert!(before_the_wall(true)[0] < 0.3, "{:?}", before_the_wall(true));
+}
+
+/// The ground, of so many texels along a side, with a block of 1 m over a part of it that leaves a gap of some height; its side stands like the
+/// shell's.
+fn gap_over_ground(height: f32, side: u32) -> (Scene, SheetSettings) {
+    let (ground, sheet) = ground();
+    let (low, x, y, z) = (Vec3::new(0.03, height, -0.9), Vec3::X * 0.87, Vec3::Y, Vec3::Z * 1.8);
+    let (high, far) = (low + y, low + x);
+    let sides =
+        [quad(low, z, y), quad(far, y, z), quad(low + z, x, y), quad(low, y, x), quad(high, z, x), quad(low, x, z)];
+    let mut meshes = Vec::from_iter(std::iter::once(ground).chain(sides));
+    meshes[1..].iter_mut().for_each(|mesh| mesh.material = 1);
+    let block = Material::default();
+    let scene = Scene { meshes, materials: vec![Material::default(), block], ..Scene::default() };
+    (scene, SheetSettings { width: side, height: side, ..sheet })
+}
+
+/// The open share along a row of texels of the light map and of the transfer texture.
+fn beside_the_block(height: f32, side: u32) -> [Vec<f32>; 2] {
+    let (scene, sheet) = gap_over_ground(height, side);
+    let textures =
+        TextureSettings { sheets: vec![sheet.clone()], dilation: 2, levels: false, bent: false, stitch: true };
+    let extras = Extras { textures: Some(textures), ..Extras::default() };
+    let settings = fixed(2, Sampler::OwenSobol, 1024, 0);
+    let prt = bake::bake_with(&scene, &settings, &extras, &|_| ControlFlow::Continue(())).expect("it bakes");
+    let held = prt.transfer_textures.as_ref().expect("transfer textures were asked for");
+    let level = &held.sheets[0].levels[0];
+    let values = level.diffuse.decode(prt.codebooks.diffuse.as_ref());
+    let texel = |column: u32| {
+        let place = side / 2 * side + column;
+        let slot = level.places.iter().position(|&p| p == place).expect("the ground fills its sheet");
+        // White light of radiance 1 has one coefficient.
+        values[slot * 4 * held.channels as usize] * (4.0 * std::f32::consts::PI).sqrt()
+    };
+    [row_of_map(&scene, sheet), (0..side).map(texel).collect()]
+}
+
+/// A gap of 2.5 cm under a block is dark from some centimetres on, but texels of 10 cm cannot tell how far that is: before the block they
+/// have the half of the sky that is open there, as before a wall.
+#[test]
+fn the_dark_of_a_gap_lower_than_a_texel_stays_there() {
+    for row in beside_the_block(0.025, 20) {
+        for light in at_the_wall(&row) {
+            assert!((0.48..0.58).contains(&light), "{light}");
+        }
+    }
+}
+
+/// Of the sky a point under the edge of a long plate sees `(1 - sin(atan(d / h))) / 2`, at the depth d under the height h: texels that are
+/// small enough tell it.
+#[test]
+fn gaps_as_high_as_a_texel_keep_their_dark() {
+    let seen = |d: f64, h: f64| 0.5 * (1.0 - libm::sin(libm::atan2(d, h)));
+    for row in beside_the_block(0.15, 20) {
+        let exact = seen(0.12, 0.15) + seen(0.75, 0.15);
+        assert!((f64::from(row[11]) - exact).abs() < 0.02, "{} instead of {exact}", row[11]);
+    }
+}
+
+/// What stands at the point of the texel under the low gap would not pass for the light before a wall.
+#[test]
+fn the_dark_of_a_gap_lower_than_a_texel_stays_there_can_fail() {
+    for row in beside_the_block(0.025, 100) {
+        // The middle of column 52 lies at 0.05, as that of column 10 of 20.
+        assert!((0.14..0.24).contains(&row[52]), "{}", row[52]);
+        assert!(0.3 * 0.5 + 0.7 * row[52] < 0.4);
+    }
 }

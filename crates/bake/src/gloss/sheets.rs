@@ -6,8 +6,9 @@ use super::settings::TextureSettings;
 use crate::arrival::{Arrival, Arrivals};
 use crate::error::Error;
 use crate::extras::Done;
+use crate::maps::hidden::{self, Hidden, is_hidden};
 use crate::maps::plate::{NONE, Plate};
-use crate::maps::{SheetSettings, arrive_as, receiver, stitch_all};
+use crate::maps::{SheetSettings, arrive_as, extent, receiver, stitch_all};
 use crate::progress::Stage;
 use crate::receivers::Receiver;
 use crate::repair::is_inside;
@@ -42,6 +43,7 @@ struct Told<'a> {
 struct Kept {
     row: Vec<f32>,
     is_inside: bool,
+    is_hidden: bool,
     error: f32,
     rays: [u64; 2],
     lost: [f64; 2],
@@ -75,7 +77,6 @@ pub(crate) fn bake(
         let told = Told { record, errors: &mut errors, lost };
         let mut plate = gather(done, arrivals, maker, settings, plan, first_index, told)?;
         first_index = first_index.wrapping_add(plan.settings.width * plan.settings.height);
-        plate.mend();
         record.unfilled += fill_from_vertices(done, maker, plan, &mut plate) as u64;
         (0..settings.dilation.min(1)).for_each(|_| plate.dilate());
         plates.push(plate);
@@ -94,7 +95,7 @@ pub(crate) fn bake(
     Ok(plates.into_iter().zip(plans).map(finish).collect())
 }
 
-/// What arrives at the texels of one sheet.
+/// What arrives at the texels of one sheet, those mended that are inside of bodies or hidden.
 fn gather(
     done: &Done<'_>,
     arrivals: &Arrivals<'_>,
@@ -113,6 +114,7 @@ fn gather(
             lost: maker.lost(plan.layout, &arrival, &row),
             row,
             is_inside: is_inside(arrival.openness, arrival.inside_share) || !points[k].sound,
+            is_hidden: is_hidden(&arrival, extent(done, &plan.texels[k], [sheet.width, sheet.height])),
             error: arrival.error,
             rays: [arrival.visibility_rays, arrival.bounce_rays],
         }
@@ -120,19 +122,25 @@ fn gather(
     let found = arrive_as(done, arrivals, (&points, Stage::Texels), &index, &keep)?;
     let mut plate = Plate::empty([sheet.width as usize, sheet.height as usize], plan.layout.len());
     let chart = charts(done, sheet);
+    let mut hidden = Vec::new();
     record.texels += plan.texels.len() as u64;
     for (texel, kept) in plan.texels.iter().zip(found) {
         let place = texel.row as usize * plate.width + texel.column as usize;
         record.rays = [record.rays[0] + kept.rays[0], record.rays[1] + kept.rays[1]];
         *lost = [lost[0] + kept.lost[0], lost[1] + kept.lost[1]];
-        if kept.is_inside {
+        if kept.is_inside || kept.is_hidden {
             plate.owner[place] = chart(texel);
-            record.inside += 1;
+            record.inside += u64::from(kept.is_inside);
+            hidden.extend((!kept.is_inside).then_some(Hidden { place, row: kept.row }));
             continue;
         }
         plate.add_slot(place, chart(texel));
         plate.values.extend(kept.row);
         errors.push(kept.error);
+    }
+    for one in hidden::mend(&mut plate, hidden) {
+        plate.add_slot(one.place, plate.owner[one.place]);
+        plate.values.extend(one.row);
     }
     Ok(plate)
 }

@@ -1,11 +1,10 @@
-//! Texels that no view shows: under a shell that is drawn from its other side alone.
+//! Texels that no view shows: under a shell that is drawn from its other side alone, or in a gap that is lower than a texel is large.
 //!
-//! They are dark, and filters would draw their darkness out along the rim of the shell. Those beside texels that are seen take the light of
-//! these; the others keep their own.
+//! They are dark, and filters would draw their darkness out along the rim of the shell or of the gap, by a texel here and by two there. Those
+//! beside texels that are seen take the light of these; the others keep their own.
 
-use super::Gathered;
-use crate::arrival::{Arrival, Shape};
-use scene::lightmap::Texel;
+use super::plate::{NONE, Plate};
+use crate::arrival::Arrival;
 
 /// Open share below which a texel may be hidden.
 const OPEN: f32 = 0.02;
@@ -15,45 +14,38 @@ const BEHIND: f32 = 0.5;
 const READ: usize = 2;
 
 /// A texel that no view shows.
-pub(super) struct Hidden {
-    pub(super) texel: Texel,
+pub(crate) struct Hidden {
     /// Its place in the sheet.
-    pub(super) place: usize,
+    pub(crate) place: usize,
     /// What arrives there.
-    pub(super) row: Vec<f32>,
+    pub(crate) row: Vec<f32>,
 }
 
-/// Whether what is found at a texel tells that no view shows it.
-pub(super) fn is_hidden(arrival: &Arrival) -> bool {
-    arrival.openness < OPEN && arrival.behind_share > BEHIND
+/// Whether what is found at a texel of some extent on its surface tells that no view shows it.
+pub(crate) fn is_hidden(arrival: &Arrival, extent: f32) -> bool {
+    arrival.openness < OPEN && arrival.behind_share > BEHIND || arrival.cover < extent
 }
 
-impl Gathered {
-    /// Fills texels inside of bodies from their chart, and hidden ones near those that are seen.
-    pub(super) fn mend(&mut self, shape: Shape) {
-        let far: Vec<bool> = self.hidden.iter().map(|one| !self.is_read(one)).collect();
-        self.plate.mend();
-        let hidden = std::mem::take(&mut self.hidden);
-        for one in hidden.into_iter().zip(far).filter(|(_, far)| *far).map(|(one, _)| one) {
-            let slot = self.plate.slot_of[one.place];
-            if slot == super::plate::NONE {
-                self.inside.push(one.texel);
-            } else {
-                self.plate.values[slot as usize * shape.len()..][..shape.len()].copy_from_slice(&one.row);
-            }
+/// Fills texels inside of bodies from their chart, and hidden ones near those that are seen. Returns the hidden ones of charts that have none of
+/// these; they stay empty.
+pub(crate) fn mend(plate: &mut Plate, hidden: Vec<Hidden>) -> Vec<Hidden> {
+    let far: Vec<bool> = hidden.iter().map(|one| !is_read(plate, one.place)).collect();
+    plate.mend();
+    let mut empty = Vec::new();
+    for one in hidden.into_iter().zip(far).filter(|(_, far)| *far).map(|(one, _)| one) {
+        match plate.slot_of[one.place] {
+            NONE => empty.push(one),
+            slot => plate.values[slot as usize * plate.row_len..][..plate.row_len].copy_from_slice(&one.row),
         }
     }
+    empty
+}
 
-    /// Whether a texel of its chart that is seen lies so near that filters read both.
-    fn is_read(&self, one: &Hidden) -> bool {
-        let plate = &self.plate;
-        let (column, row) = (one.place % plate.width, one.place / plate.width);
-        let columns = column.saturating_sub(READ)..(column + READ + 1).min(plate.width);
-        (row.saturating_sub(READ)..(row + READ + 1).min(plate.height)).any(|y| {
-            let line = &plate.slot_of[y * plate.width..][columns.clone()];
-            let of_chart =
-                |&slot: &u32| slot != super::plate::NONE && plate.chart_of[slot as usize] == plate.owner[one.place];
-            line.iter().any(of_chart)
-        })
-    }
+/// Whether a texel of its chart that is seen lies so near that filters read both.
+fn is_read(plate: &Plate, place: usize) -> bool {
+    let (column, row) = (place % plate.width, place / plate.width);
+    let columns = column.saturating_sub(READ)..(column + READ + 1).min(plate.width);
+    let of_chart = |&slot: &u32| slot != NONE && plate.chart_of[slot as usize] == plate.owner[place];
+    (row.saturating_sub(READ)..(row + READ + 1).min(plate.height))
+        .any(|y| plate.slot_of[y * plate.width..][columns.clone()].iter().any(of_chart))
 }
