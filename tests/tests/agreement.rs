@@ -6,9 +6,9 @@
 mod support;
 
 use coeff_io::{Bounces, Quality};
-use glam::Quat;
+use glam::{Quat, Vec3, Vec4};
 use probe_io::{Environment, LoadOptions};
-use scene::Scene;
+use scene::{Material, Mesh, Scene};
 use sh_math::{Bands, Rgb};
 use support::{BandLight, Subject, measure};
 
@@ -79,6 +79,65 @@ fn all_bounces_agree_can_fail() {
     let turned = BandLight { picture: BandLight::new(&behind).picture, ..light };
     let elsewhere = measure(&direct, &turned, Some(0), 0.02);
     assert!(elsewhere.difference > 10.0 * AGREE, "light from the other side is not noticed: {elsewhere}");
+}
+
+/// The faces of a block, each of so many cells along x, y and z.
+fn block(low: Vec3, high: Vec3, cells: [u32; 3]) -> Mesh {
+    let mut mesh = Mesh::default();
+    for (axis, front) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, true), (axis, false)]) {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let first = mesh.positions.len() as u32;
+        let [columns, rows] = [cells[u], cells[v]];
+        for (i, j) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (i, j))) {
+            let mut share = [if front { 1.0 } else { 0.0 }; 3];
+            (share[u], share[v]) = (i as f32 / columns as f32, j as f32 / rows as f32);
+            mesh.positions.push(low + (high - low) * Vec3::from(share));
+            mesh.normals.push(Vec3::AXES[axis] * if front { 1.0 } else { -1.0 });
+        }
+        for a in (0..columns * rows).map(|k| first + k % columns + k / columns * (columns + 1)) {
+            let (b, c, d) = (a + 1, a + columns + 2, a + columns + 1);
+            mesh.triangles.extend(if front { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
+        }
+    }
+    mesh
+}
+
+/// A post sunk into a slab, and two plates inside the slab which see each other's fronts and nothing else.
+fn sunk() -> Scene {
+    let meshes = vec![
+        block(Vec3::new(-1.0, -0.5, -1.0), Vec3::new(1.0, 0.0, 1.0), [8, 2, 8]),
+        block(Vec3::new(-0.2, -0.1, -0.2), Vec3::new(0.2, 0.6, 0.2), [4, 7, 4]),
+        block(Vec3::new(0.4, -0.3, 0.4), Vec3::new(0.8, -0.29, 0.8), [4, 1, 4]),
+        block(Vec3::new(0.4, -0.27, 0.4), Vec3::new(0.8, -0.26, 0.8), [4, 1, 4]),
+    ];
+    let grey = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), ..Material::default() };
+    Scene { meshes, materials: vec![grey], ..Scene::default() }
+}
+
+/// Vertices inside a body hold what their surface is like where it shows, and those inside and out of sight are left out.
+#[test]
+fn what_shows_of_sunk_blocks_agrees() {
+    let mut subject = Subject::bake(sunk(), Bounces::Fixed(1), MANY, 3000);
+    subject.spots.retain(|spot| spot.places.len() > 1);
+    assert!(subject.moved >= 30, "rows inside bodies are compared: {}", subject.moved);
+    assert!(subject.buried >= 10, "rows of the plates show nowhere: {}", subject.buried);
+    let figures = measure(&subject, &BandLight::new(&windowed(&sky())), Some(1), AIM);
+    assert!(figures.difference <= AGREE, "{figures}");
+}
+
+/// With rows inside bodies as if they stood in the open.
+#[test]
+fn what_shows_of_sunk_blocks_agrees_can_fail() {
+    let mut subject = Subject::bake(sunk(), Bounces::Fixed(1), Quality::Rays(512), 1000);
+    subject.spots.retain(|spot| spot.places.len() > 1);
+    let transfer = &mut subject.prt.transfer;
+    let size = (transfer.bands * transfer.bands * transfer.channels) as usize;
+    let open = transfer.values.chunks(size).max_by(|a, b| a[0].total_cmp(&b[0])).expect("there are rows").to_vec();
+    for spot in &subject.spots {
+        transfer.values[spot.row * size..][..size].copy_from_slice(&open);
+    }
+    let figures = measure(&subject, &BandLight::new(&windowed(&sky())), Some(1), 0.02);
+    assert!(figures.difference > 2.0 * AGREE, "rows that were wrongly moved are not noticed: {figures}");
 }
 
 /// Scenes that others made, under a photographed light.

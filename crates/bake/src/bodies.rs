@@ -19,8 +19,9 @@ const LEAST_VOLUME: f64 = 1e-3;
 const FREE_SHARE: f64 = 0.01;
 /// Length of free edges, over the root of the component's area, that is a small hole. A square sheet has 4.
 const HOLE: f64 = 0.1;
-/// How far beyond an open edge another surface is looked for, over the root of the component's area.
-const BEYOND: f32 = 1e-3;
+/// How far beyond an open edge another surface is looked for, over the root of the component's area: what stands on something often
+/// hovers a hair above it.
+const BEYOND: [f32; 2] = [1e-3, 1e-2];
 /// Most triangles of an inward component from which the body around it is looked for.
 const WITNESSES: usize = 9;
 
@@ -124,13 +125,23 @@ impl Component {
             return true;
         };
         let inwards = normal.cross(along);
-        let size = (self.area as f32).sqrt();
-        let start = middle - BEYOND * size * inwards + 0.1 * BEYOND * size * normal;
-        let mut ray = Ray { t_max: size, ..Ray::new(start, inwards) };
-        // A surface that curves outwards stands in its own way.
+        BEYOND.iter().any(|beyond| {
+            let step = beyond * (self.area as f32).sqrt();
+            self.comes_out(world, middle - step * inwards + 0.1 * step * normal, inwards)
+        })
+    }
+
+    /// Whether a ray leaves something that it has not entered before. A surface that curves outwards stands in its own way.
+    fn comes_out(&self, world: &World<'_>, start: Vec3, direction: Vec3) -> bool {
+        let mut ray = Ray { t_max: (self.area as f32).sqrt(), ..Ray::new(start, direction) };
+        let mut entered = 0u32;
         while let Some(hit) = world.closest(&ray) {
-            if self.triangles.binary_search(&hit.triangle).is_err() {
-                return !hit.front;
+            let other = self.triangles.binary_search(&hit.triangle).is_err();
+            match (other, hit.front) {
+                (true, false) if entered == 0 => return true,
+                (true, false) => entered -= 1,
+                (true, true) => entered += 1,
+                (false, _) => {}
             }
             ray.t_min = hit.t.next_up();
         }

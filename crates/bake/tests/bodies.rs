@@ -213,6 +213,7 @@ fn sheets_are_no_bodies() {
     stays("a hedge", with_ground(hedge()));
     stays("an open tube", tube());
     stays("an open tube over a ground", with_ground(tube()));
+    stays("an open tube among leaves", [tube(), crown(60)].concat());
     stays("a terrain with a skirt", skirt());
 }
 
@@ -261,11 +262,23 @@ fn bodies_are_bodies() {
     is_mended("a crate without a bottom, sunk into the ground", box_of(low, size, 3, [true, false]));
     let standing = box_of(Vec3::new(-0.7, 0.0, -0.7), size, 3, [true, false]);
     is_mended("a crate without a bottom on the ground", standing);
+    let mut pierced = box_of(low, size, 3, [true, false]);
+    pierced.extend(crate_at(Vec3::new(-0.8, -0.4, -0.8), Vec3::new(1.6, 0.1, 1.6)));
+    is_mended("a crate without a bottom, sunk into the ground and a slab in it", pierced);
+    let hovering = |height: f32| box_of(Vec3::new(-0.7, height, -0.7), size, 3, [true, false]);
+    is_mended("a crate without a bottom that hovers a hair above the ground", hovering(0.01));
     let mut hollow = crate_at(low, size);
     hollow.extend(flipped(crate_at(low + 0.2, size - 0.4)));
     let prt = quiet(&scene(with_ground(hollow)), &settings());
     // Between the walls lies the ring of vertices 0.6 m from the middle.
     assert_eq!(prt.achieved.repairs.inside, 24, "within the wall of a hollow crate");
+}
+
+/// Twin: from a gap that one can look into, the inside shows.
+#[test]
+fn bodies_are_bodies_can_fail() {
+    let raised = box_of(Vec3::new(-0.7, 0.15, -0.7), Vec3::splat(1.4), 3, [true, false]);
+    assert_eq!(quiet(&scene(with_ground(raised)), &settings()).achieved.repairs.inside, 0);
 }
 
 /// Corners that rounding moved, and sides that are cut more finely than the lid, leave a crate closed.

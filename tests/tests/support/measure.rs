@@ -17,7 +17,7 @@ const MOST: u32 = 1 << 20;
 pub(crate) struct Figures {
     /// Receivers compared.
     pub(crate) receivers: usize,
-    /// How many of them stand inside bodies, and are compared where their surface comes out.
+    /// How many of them are hidden, and are compared at what shows of their triangles.
     pub(crate) moved: usize,
     /// Receivers drawn beside them that show nowhere: wholly inside bodies, or without normal and area.
     pub(crate) hidden: [usize; 2],
@@ -79,13 +79,28 @@ impl Row {
 }
 
 fn rows(subject: &Subject, light: &BandLight, traced: &[Estimate]) -> Vec<Row> {
-    let row = |(spot, &traced): (&Spot, &Estimate)| Row {
-        row: spot.row,
-        area: subject.area(spot.row),
-        baked: subject.radiance(spot, &light.coefficients),
-        traced,
+    let mut rest = traced;
+    let row = |spot: &Spot| {
+        let (own, later) = rest.split_at(spot.places.len());
+        rest = later;
+        Row {
+            row: spot.row,
+            area: subject.area(spot.row),
+            baked: subject.radiance(spot, &light.coefficients),
+            traced: mean(own),
+        }
     };
-    subject.spots.iter().zip(traced).map(row).collect()
+    subject.spots.iter().map(row).collect()
+}
+
+/// The mean of independent estimates.
+fn mean(all: &[Estimate]) -> Estimate {
+    let share = 1.0 / all.len() as f32;
+    let sum = |value: &dyn Fn(&Estimate) -> f32| share * all.iter().map(value).sum::<f32>();
+    Estimate {
+        mean: [0, 1, 2].map(|c| sum(&|one| one.mean[c])),
+        std_error: [0, 1, 2].map(|c| (share * sum(&|one| one.std_error[c].powi(2))).sqrt()),
+    }
 }
 
 fn figures(subject: &Subject, mut rows: Vec<Row>, paths: u32) -> Figures {
@@ -122,7 +137,11 @@ impl Display for Figures {
         let shares = [self.difference, self.by_area, self.bias, self.noise, median, most].map(|share| 100.0 * share);
         let [difference, by_area, bias, noise, median, most] = shares;
         let [buried, flat] = self.hidden;
-        write!(f, "{} receivers ({} where they come out of bodies; beside them ", self.receivers, self.moved)?;
+        write!(
+            f,
+            "{} receivers ({} hidden, at what shows of their triangles; beside them ",
+            self.receivers, self.moved
+        )?;
         write!(f, "{buried} wholly buried and {flat} without area), {} paths: ", self.paths)?;
         write!(f, "difference {difference:.2} % (by area {by_area:.2} %), bias {bias:+.2} %, noise {noise:.2} %, ")?;
         write!(f, "per receiver median {median:.2} %, 95th percentile {most:.2} %; worst:\n{}", self.worst)

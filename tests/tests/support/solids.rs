@@ -28,6 +28,10 @@ pub(crate) struct Solids<'a> {
     known: RefCell<HashMap<u32, bool>>,
 }
 
+/// Walks that decide whether a place has a way out, and steps of each.
+const WALKS: u32 = 512;
+const STEPS: u32 = 12;
+
 /// Shares of rays.
 struct Seen {
     blocked: f32,
@@ -48,8 +52,36 @@ impl<'a> Solids<'a> {
         Self { scene, tracer, parts, known: RefCell::default() }
     }
 
+    /// Whether somebody who stands outside of things can see a place.
+    pub(crate) fn shows(&self, receiver: &Receiver, rng: &mut Rng) -> bool {
+        !self.bury(receiver, rng) && !self.is_sealed(receiver, rng)
+    }
+
+    /// Whether no walk from front to front finds the sky and most end on backs: a pocket between things that run into each other. What
+    /// is inside things sees fronts of others there. A closed room has no backs, and shows.
+    fn is_sealed(&self, receiver: &Receiver, rng: &mut Rng) -> bool {
+        let mut ended = 0;
+        for _ in 0..WALKS {
+            let mut origin = offset_origin(receiver.position, receiver.geometric_normal);
+            let mut frame = Frame::from_normal(receiver.normal);
+            for _ in 0..STEPS {
+                let direction = frame.to_world(square_to_cosine_concentric(rng.next_square()));
+                let Some(hit) = self.closest(&Ray::new(origin, direction)) else { return false };
+                if self.is_back(&hit) {
+                    ended += 1;
+                    break;
+                }
+                let (at, across) = self.place(&hit);
+                let normal = if hit.front { across } else { -across };
+                origin = offset_origin(at, normal);
+                frame = Frame::from_normal(normal);
+            }
+        }
+        2 * ended > WALKS
+    }
+
     /// Whether a receiver sees mostly the insides of solid things, or nothing but surfaces and mostly their backs.
-    pub(crate) fn bury(&self, receiver: &Receiver, rng: &mut Rng) -> bool {
+    fn bury(&self, receiver: &Receiver, rng: &mut Rng) -> bool {
         let origin = offset_origin(receiver.position, receiver.geometric_normal);
         let is_mostly = |seen: &Seen| seen.blocked > BURIED && seen.backs > BURIED * seen.blocked;
         let any = self.look(origin, receiver.normal, PROBES[0], rng, &|hit| self.is_back(hit));
@@ -61,20 +93,32 @@ impl<'a> Solids<'a> {
 
     fn look(&self, origin: Vec3, normal: Vec3, rays: u32, rng: &mut Rng, counts: &dyn Fn(&Hit) -> bool) -> Seen {
         let frame = Frame::from_normal(normal);
-        let solid = |t: u32, u: f32, v: f32| {
-            let [mesh, triangle] = self.parts[t as usize];
-            self.scene.coverage(mesh, triangle, u, v) > 0.0
-        };
         let (mut blocked, mut backs) = (0, 0);
         for _ in 0..rays {
             let direction = frame.to_world(square_to_cosine_concentric(rng.next_square()));
-            if let Some(hit) = self.tracer.closest(&Ray::new(origin, direction), &solid) {
+            if let Some(hit) = self.closest(&Ray::new(origin, direction)) {
                 blocked += 1;
                 backs += u32::from(counts(&hit));
             }
         }
         let share = |count: u32| count as f32 / rays as f32;
         Seen { blocked: share(blocked), backs: share(backs) }
+    }
+
+    fn closest(&self, ray: &Ray) -> Option<Hit> {
+        let solid = |t: u32, u: f32, v: f32| {
+            let [mesh, triangle] = self.parts[t as usize];
+            self.scene.coverage(mesh, triangle, u, v) > 0.0
+        };
+        self.tracer.closest(ray, &solid)
+    }
+
+    /// Where a hit is, and the unit normal of the front there.
+    fn place(&self, hit: &Hit) -> (Vec3, Vec3) {
+        let [mesh, triangle] = self.parts[hit.triangle as usize];
+        let mesh = &self.scene.meshes[mesh];
+        let [a, b, c] = mesh.triangles[triangle].map(|v| mesh.positions[v as usize]);
+        (a + hit.u * (b - a) + hit.v * (c - a), (b - a).cross(c - a).normalize_or_zero())
     }
 
     /// Whether a hit is on the back of an opaque one-sided surface.
@@ -88,12 +132,10 @@ impl<'a> Solids<'a> {
         if let Some(&known) = self.known.borrow().get(&hit.triangle) {
             return known;
         }
-        let [mesh, triangle] = self.parts[hit.triangle as usize];
-        let mesh = &self.scene.meshes[mesh];
-        let [a, b, c] = mesh.triangles[triangle].map(|v| mesh.positions[v as usize]);
-        let behind = -(b - a).cross(c - a).normalize_or_zero();
+        let (at, across) = self.place(hit);
+        let behind = -across;
         let mut rng = Rng::new(u64::from(hit.triangle), 7);
-        let origin = offset_origin(a + hit.u * (b - a) + hit.v * (c - a), behind);
+        let origin = offset_origin(at, behind);
         let seen = self.look(origin, behind, PROBES[1], &mut rng, &|hit| self.is_back(hit));
         let is = 1.0 - seen.blocked <= SEALED[0] && seen.backs >= SEALED[1];
         self.known.borrow_mut().insert(hit.triangle, is);

@@ -3,13 +3,15 @@
 use super::solids::Solids;
 use bake::{Receiver, Receivers};
 use coeff_io::{Bounces, Prt, Quality, Settings};
+use glam::Vec3;
 use sampling::rng::Rng;
 use scene::Scene;
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-/// Halvings by which the place is found where a surface comes out of a body.
-const HALVINGS: u32 = 10;
+/// Places at which a row is compared that does not show itself.
+const PLACES: usize = 4;
+/// Places that are drawn on its triangles before it counts as buried.
+const TRIES: usize = 256;
 
 /// A scene, its bake, and the rows that are compared.
 pub(crate) struct Subject {
@@ -19,17 +21,23 @@ pub(crate) struct Subject {
     pub(crate) prt: Prt,
     /// Rows drawn at random, without repetition, with the places where they show.
     pub(crate) spots: Vec<Spot>,
-    /// How many of them stand inside bodies, and are compared where their surface comes out.
+    /// How many of them are hidden, and are compared at what shows of their triangles.
     pub(crate) moved: usize,
-    /// Rows drawn beside them that show nowhere: neither they nor any neighbour stands outside of bodies.
+    /// Rows drawn beside them that show nowhere: no place on their triangles does.
     pub(crate) buried: usize,
     /// Rows drawn that have no normal, nor their triangles an area.
     pub(crate) flat: usize,
 }
 
-/// A place where a row of the transfer shows.
+/// Where a row of the transfer shows.
 pub(crate) struct Spot {
     pub(crate) row: usize,
+    /// The row itself, or some places drawn on its triangles; their mean is compared.
+    pub(crate) places: Vec<Place>,
+}
+
+/// A place on a surface.
+pub(crate) struct Place {
     /// Rows between which the renderers interpolate there, with their shares.
     shares: Vec<(usize, f64)>,
     at: Receiver,
@@ -51,28 +59,32 @@ impl Subject {
         subject
     }
 
-    /// The compared receivers as the path tracer takes them.
+    /// The compared places as the path tracer takes them, spot after spot.
     pub(crate) fn points(&self) -> Vec<reference::Receiver> {
-        let point = |Spot { row, at, .. }: &Spot| reference::Receiver {
-            position: at.position,
-            normal: at.normal,
-            geometric_normal: at.geometric_normal,
-            albedo: self.prt.transfer.albedo[*row].into(),
+        let points = |spot: &Spot| {
+            let albedo = self.prt.transfer.albedo[spot.row].into();
+            let point = |Place { at, .. }: &Place| reference::Receiver {
+                position: at.position,
+                normal: at.normal,
+                geometric_normal: at.geometric_normal,
+                albedo,
+            };
+            spot.places.iter().map(point).collect::<Vec<_>>()
         };
-        self.spots.iter().map(point).collect()
+        self.spots.iter().flat_map(points).collect()
     }
 
     /// Area that a row stands for, square metres: a third of its triangles'.
     pub(crate) fn area(&self, row: usize) -> f64 {
         let geometry = &self.prt.geometry;
         let of = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| glam::Vec3::from(geometry.positions[v as usize]).as_dvec3());
+            let [a, b, c] = t.map(|v| Vec3::from(geometry.positions[v as usize]).as_dvec3());
             (b - a).cross(c - a).length() / 6.0
         };
         geometry.triangles.iter().filter(|t| t.contains(&(row as u32))).map(of).sum()
     }
 
-    /// Outgoing radiance at a place under a light: albedo of its row times transfer times light.
+    /// Outgoing radiance of a spot under a light, as drawn: albedo of its row times transfer times light.
     pub(crate) fn radiance(&self, spot: &Spot, light: &sh_math::Rgb) -> [f64; 3] {
         let transfer = &self.prt.transfer;
         let (n, channels) = ((transfer.bands * transfer.bands) as usize, transfer.channels as usize);
@@ -82,7 +94,9 @@ impl Subject {
             (0..n).map(term).sum::<f64>()
         };
         let albedo = transfer.albedo[spot.row].map(f64::from);
-        [0, 1, 2].map(|c| albedo[c] * spot.shares.iter().map(|&(row, share)| share * of_row(row, c)).sum::<f64>())
+        let at = |place: &Place, c| place.shares.iter().map(|&(row, share)| share * of_row(row, c)).sum::<f64>();
+        let mean = |c| spot.places.iter().map(|place| at(place, c)).sum::<f64>() / spot.places.len() as f64;
+        [0, 1, 2].map(|c| albedo[c] * mean(c))
     }
 
     /// Draws a random subset of all receivers.
@@ -92,7 +106,6 @@ impl Subject {
         for k in (1..order.len()).rev() {
             order.swap(k, (rng.next_u64() % (k as u64 + 1)) as usize);
         }
-        let neighbours = neighbours(all.permanent, &self.prt.geometry.triangles);
         let solids = Solids::of(&self.scene);
         for row in order {
             if self.spots.len() == count {
@@ -101,54 +114,62 @@ impl Subject {
             let receiver = all.list[row];
             if !receiver.sound {
                 self.flat += 1;
-            } else if !solids.bury(&receiver, &mut rng) {
-                self.spots.push(Spot { row, shares: vec![(row, 1.0)], at: receiver });
-            } else if let Some(spot) = come_out(&solids, all, row, &neighbours[row], &mut rng) {
-                self.spots.push(spot);
-                self.moved += 1;
+            } else if solids.shows(&receiver, &mut rng) {
+                let places = vec![Place { shares: vec![(row, 1.0)], at: receiver }];
+                self.spots.push(Spot { row, places });
             } else {
-                self.buried += 1;
+                let places = self.showing(&solids, row, &mut rng);
+                if places.is_empty() {
+                    self.buried += 1;
+                } else {
+                    self.moved += 1;
+                    self.spots.push(Spot { row, places });
+                }
             }
         }
     }
-}
 
-/// The rows that share an edge with each.
-fn neighbours(rows: usize, triangles: &[[u32; 3]]) -> Vec<Vec<usize>> {
-    let mut found = vec![Vec::new(); rows];
-    for &[a, b, c] in triangles {
-        for [a, b] in [[a, b], [b, c], [c, a]].map(|edge| edge.map(|row| row as usize)) {
-            found[a].push(b);
-            found[b].push(a);
+    /// Places on the triangles of a row that show, drawn as often as the row weighs there in the picture.
+    fn showing(&self, solids: &Solids<'_>, row: usize, rng: &mut Rng) -> Vec<Place> {
+        let triangles = self.prt.geometry.triangles.iter().map(|t| t.map(|v| v as usize));
+        let around: Vec<[usize; 3]> = triangles.filter(|t| t.contains(&row)).collect();
+        let mut sums: Vec<f32> = around.iter().map(|t| self.corners(*t).1.length()).collect();
+        (1..sums.len()).for_each(|k| sums[k] += sums[k - 1]);
+        let mut places = Vec::new();
+        for _ in 0..TRIES {
+            let at = rng.next_f32() * sums.last().unwrap_or(&0.0);
+            let (u, v) = rng.next_square().into();
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let Some(&triangle) = around.get(sums.partition_point(|&end| end <= at)) else { continue };
+            let shares = [1.0 - u - v, u, v];
+            let own = triangle.iter().position(|&corner| corner == row).map_or(0.0, |corner| shares[corner]);
+            let place = self.place(triangle, shares);
+            if rng.next_f32() < own && solids.shows(&place.at, rng) {
+                places.push(place);
+            }
+            if places.len() == PLACES {
+                break;
+            }
         }
+        places
     }
-    for list in &mut found {
-        list.sort_unstable();
-        list.dedup();
-    }
-    found
-}
 
-/// The place nearest to a row inside a body where an edge to a neighbour outside comes out of it.
-fn come_out(solids: &Solids<'_>, all: &Receivers, row: usize, around: &[usize], rng: &mut Rng) -> Option<Spot> {
-    let inside = all.list[row];
-    let mut places: BTreeMap<u32, Spot> = BTreeMap::new();
-    for &other in around {
-        let end = all.list[other];
-        if !end.sound || solids.bury(&end, rng) {
-            continue;
-        }
-        let way = inside.position - end.position;
-        let at = |share: f32| Receiver { position: end.position + share * way, ..end };
-        let (mut free, mut buried) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (free + buried);
-            if solids.bury(&at(middle), rng) { buried = middle } else { free = middle }
-        }
-        let shares = vec![(other, 1.0 - f64::from(free)), (row, f64::from(free))];
-        // Distances are not negative, so that their bits are in their order.
-        let distance = (1.0 - free) * way.length();
-        places.entry(distance.to_bits()).or_insert(Spot { row, shares, at: at(free) });
+    /// Corners of a triangle, and its normal with twice its area as length.
+    fn corners(&self, triangle: [usize; 3]) -> ([Vec3; 3], Vec3) {
+        let [a, b, c] = triangle.map(|v| Vec3::from(self.prt.geometry.positions[v]));
+        ([a, b, c], (b - a).cross(c - a))
     }
-    places.into_values().next()
+
+    /// A place on a triangle, as renderers interpolate between its corners.
+    fn place(&self, triangle: [usize; 3], shares: [f32; 3]) -> Place {
+        let (corners, across) = self.corners(triangle);
+        let normals = triangle.map(|v| Vec3::from(self.prt.geometry.normals[v]));
+        let mix = |of: [Vec3; 3]| of.into_iter().zip(shares).map(|(x, share)| share * x).sum::<Vec3>();
+        let position = mix(corners);
+        let geometric_normal = across.normalize_or_zero();
+        let normal = mix(normals).try_normalize().unwrap_or(geometric_normal);
+        let (vertex, rounding) = (position, 0.0);
+        let at = Receiver { position, vertex, normal, geometric_normal, rounding, sound: true, dark: false };
+        Place { shares: triangle.into_iter().zip(shares.map(f64::from)).collect(), at }
+    }
 }
