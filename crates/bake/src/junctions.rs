@@ -39,6 +39,7 @@ pub(crate) fn joined(scene: &Scene, shortest: f32) -> Cow<'_, Scene> {
         return Cow::Borrowed(scene);
     }
     let mut joined = scene.clone();
+    // Cuts are kept: the edge of another triangle, be it of another mesh, may lie at the place of one that is cut already.
     for mesh in &mut joined.meshes {
         while cut_once(mesh, &mut cuts) {}
     }
@@ -139,20 +140,22 @@ fn share_of([a, b]: [Vec3; 2], point: Vec3) -> f32 {
 /// Cuts every edge that is to be cut at the point nearest its middle; whether there was one.
 fn cut_once(mesh: &mut Mesh, cuts: &mut Cuts) -> bool {
     let chosen = |mesh: &Mesh, edge: Edge| {
-        let ends = edge.map(|v| at(mesh, v));
+        let place = edge_place(mesh, edge);
+        // In the order of the place, so that all edges there are cut at the same point.
+        let ends = place.map(|end| Vec3::from_array(end.map(f32::from_bits)));
         let off = |point: &Vec3| (share_of(ends, *point) - 0.5).abs();
-        let points = cuts.get(&edge_place(mesh, edge))?;
-        let point = points.iter().copied().min_by(|p, q| off(p).total_cmp(&off(q)))?;
-        Some((point, share_of(ends, point)))
+        let point = cuts.get(&place)?.iter().copied().min_by(|p, q| off(p).total_cmp(&off(q)))?;
+        Some((point, share_of(edge.map(|v| at(mesh, v)), point)))
     };
     let new = cut(mesh, |mesh, edge| chosen(mesh, edge).map(|(_, share)| share));
-    let placed: Vec<(Edge, u32, Vec3, f32)> = new
+    let mut placed: Vec<(Edge, u32, Vec3, f32)> = new
         .into_iter()
         .filter_map(|(edge, vertex)| chosen(mesh, edge).map(|(point, share)| (edge, vertex, point, share)))
         .collect();
+    placed.sort_unstable_by_key(|(_, vertex, ..)| *vertex);
     for &(edge, vertex, point, share) in &placed {
         let ends = edge.map(|v| at(mesh, v));
-        let rest = cuts.remove(&edge_place(mesh, edge)).unwrap_or_default();
+        let rest = cuts.get(&edge_place(mesh, edge)).cloned().unwrap_or_default();
         mesh.positions[vertex as usize] = point;
         for (end, is_here) in [(edge[0], true), (edge[1], false)] {
             let part: Vec<Vec3> = rest
@@ -161,7 +164,7 @@ fn cut_once(mesh: &mut Mesh, cuts: &mut Cuts) -> bool {
                 .filter(|other| *other != point && (share_of(ends, *other) < share) == is_here)
                 .collect();
             if !part.is_empty() {
-                cuts.insert(edge_place(mesh, [end, vertex]), part);
+                cuts.entry(edge_place(mesh, [end, vertex])).or_insert(part);
             }
         }
     }

@@ -220,6 +220,43 @@ fn edges_along_parts_of_others_are_split_alike() {
     }
 }
 
+/// Three sheets that meet in a line from 0 to 4, each cut more finely than the one before; the line of the second runs along that of the
+/// first and has a vertex of the third within it. `order` is that of the sheets, in meshes of their own or in one.
+fn sheets(order: [usize; 3], one_mesh: bool) -> Scene {
+    let cuts: [&[f32]; 3] = [&[0.0, 4.0], &[0.0, 2.0, 4.0], &[0.0, 0.6, 2.0, 4.0]];
+    let mut meshes: Vec<Mesh> = Vec::new();
+    for k in order {
+        if meshes.is_empty() || !one_mesh {
+            meshes.push(Mesh::default());
+        }
+        let mesh = meshes.last_mut().expect("one at least");
+        for ends in cuts[k].windows(2) {
+            let v = mesh.positions.len() as u32;
+            let [a, b] = [ends[0], ends[1]].map(|x| Vec3::new(x, 0.0, 0.0));
+            let up = [Vec3::Y, Vec3::Z, Vec3::NEG_Z][k];
+            mesh.positions.extend([a, b, b + up, a + up]);
+            mesh.triangles.extend([[v, v + 1, v + 2], [v, v + 2, v + 3]]);
+        }
+    }
+    Scene { meshes, materials: vec![scene::Material::default()], ..Scene::default() }
+}
+
+/// Edges at one place are cut alike wherever they are, and the same way each time: tables have an order of their own in every run.
+#[test]
+fn edges_along_parts_of_parts_are_split_alike() {
+    for (order, one_mesh) in [([0, 1, 2], true), ([0, 1, 2], false), ([2, 1, 0], true), ([1, 0, 2], false)] {
+        let scene = sheets(order, one_mesh);
+        assert_eq!(junctions(&scene), 3, "can fail: two in the edge of the first, one in that of the second");
+        let first = refine(&scene, &with(Refine::Edge(1.8))).expect("splits").into_owned();
+        assert_eq!(junctions(&first), 0, "{order:?}, one mesh {one_mesh}");
+        for _ in 0..16 {
+            let again = refine(&scene, &with(Refine::Edge(1.8))).expect("splits");
+            let same = |(a, b): (&Mesh, &Mesh)| a.positions == b.positions && a.triangles == b.triangles;
+            assert!(first.meshes.iter().zip(&again.meshes).all(same), "{order:?}, one mesh {one_mesh}");
+        }
+    }
+}
+
 /// An edge that only meets others, or runs beside them, stays whole.
 #[test]
 fn edges_that_only_meet_are_left_alone() {
