@@ -8,7 +8,7 @@ use crate::gather::{Gatherer, Worker};
 use crate::passes::Monitor;
 use crate::receivers::{FaceSums, Receiver};
 use crate::repair::{entry, is_inside};
-use crate::split::{Edge, EdgePlace as Place, cut, edge_place as place, edges};
+use crate::split::{Edge, EdgePlace as Place, cut, edge_place as place, edges, place_of};
 use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
@@ -54,9 +54,7 @@ pub(crate) fn cut_at_exits<'a>(
         for mesh in &mut scene.to_mut().meshes {
             cut(mesh, |mesh, edge| {
                 let share = *cuts.get(&place(mesh, edge))?;
-                // The place has its ends in an order of its own.
-                let [a, b] = edge.map(|v| mesh.positions[v as usize].to_array().map(f32::to_bits));
-                Some(if a <= b { share } else { 1.0 - share })
+                Some(turned(mesh, edge, share))
             });
         }
     }
@@ -95,9 +93,14 @@ fn add_cuts(mesh: &Mesh, gatherer: &Gatherer<'_>, cuts: &mut Cuts) {
         .collect();
     for ([to, from], share) in found.into_iter().flatten() {
         let share = (share * STEPS).round().clamp(1.0, STEPS - 1.0) / STEPS;
-        let [a, b] = [to, from].map(|v| mesh.positions[v as usize].to_array().map(f32::to_bits));
-        cuts.entry(place(mesh, [to, from])).or_insert(if a <= b { share } else { 1.0 - share });
+        cuts.entry(place(mesh, [to, from])).or_insert(turned(mesh, [to, from], share));
     }
+}
+
+/// A share of the way along an edge as its place counts it, which has the ends in an order of its own; and back.
+fn turned(mesh: &Mesh, edge: Edge, share: f32) -> f32 {
+    let [a, b] = edge.map(|v| place_of(mesh.positions[v as usize]));
+    if a <= b { share } else { 1.0 - share }
 }
 
 /// Whether a receiver stands inside a body: three rays rule out most.
@@ -144,4 +147,21 @@ fn exits(
     };
     let any = found.iter().any(|one| differs(&one.2, &found[0].2));
     if any { found.into_iter().map(|(to, share, _)| (to, share)).collect() } else { Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Meshes that share an edge cut it at the same place, also where one has -0 for 0 and has the ends the other way round.
+    #[test]
+    fn an_edge_is_cut_at_one_place() {
+        let mesh = |x: f32| Mesh { positions: vec![Vec3::new(x, 0.0, 0.0), Vec3::X], ..Mesh::default() };
+        assert_eq!(place(&mesh(0.0), [0, 1]), place(&mesh(-0.0), [1, 0]));
+        let shares = [0.0, -0.0].map(|x| turned(&mesh(x), [0, 1], 0.25));
+        assert_eq!(shares, [0.25; 2]);
+        assert_eq!(turned(&mesh(-0.0), [1, 0], 0.75), 0.25);
+        // Twin: by their bits the ends of the second would be the other way round.
+        assert!((-0.0f32).to_bits() > 1.0f32.to_bits());
+    }
 }
