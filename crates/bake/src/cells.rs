@@ -18,6 +18,8 @@ const EVEN_TRIANGLES: f64 = 16_000.0;
 const WHOLE: usize = usize::MAX;
 /// Most cells along an edge.
 const MOST_SIDES: u32 = 64;
+/// Most cells of all triangles, but for one of each: thousands of slivers, each as long as the scene, have fewer along their edges.
+const MOST_CELLS: usize = 1 << 22;
 
 /// How large triangles are divided into cells; nothing where none is.
 #[derive(Debug, Default)]
@@ -53,26 +55,25 @@ impl Cells {
         let total: f64 = (0..triangles).map(area).sum();
         let [coarse, longest] =
             [COARSE_TRIANGLES, EVEN_TRIANGLES].map(|count| (2.0 * (4.0 * total / count).sqrt()) as f32);
+        let is_coarse = |triangle: &u32| world.extent(*triangle) > coarse;
+        let most_sides = most_sides((0..triangles).filter(is_coarse).count());
         let mut cells = Self::default();
-        for triangle in 0..triangles {
-            let extent = world.extent(triangle);
-            if extent > coarse {
-                let sides = ((extent / longest).ceil() as u32).min(MOST_SIDES);
-                cells.index.resize(triangles as usize, NONE);
-                cells.index[triangle as usize] = cells.divided.len() as u32;
-                let whole = Divided { triangle, first: cells.count, sides, parts: 0, fine: cells.part_of.len() };
-                let room = cells.part_of.len() + (whole.fine().sides as usize).pow(2) <= parts::MOST_PLACES;
-                let found = if room { parts::parts(world, &whole) } else { None };
-                let divided = match found {
-                    Some((part_of, parts)) => {
-                        cells.part_of.extend(part_of);
-                        Divided { parts, ..whole }
-                    }
-                    None => Divided { parts: sides * sides, fine: WHOLE, ..whole },
-                };
-                cells.count += divided.parts;
-                cells.divided.push(divided);
-            }
+        for triangle in (0..triangles).filter(is_coarse) {
+            let sides = ((world.extent(triangle) / longest).ceil() as u32).min(most_sides);
+            cells.index.resize(triangles as usize, NONE);
+            cells.index[triangle as usize] = cells.divided.len() as u32;
+            let whole = Divided { triangle, first: cells.count, sides, parts: 0, fine: cells.part_of.len() };
+            let places = f64::from(whole.fine().sides).powi(2);
+            let found = if are_few(places, area(triangle) / total) { parts::parts(world, &whole) } else { None };
+            let divided = match found {
+                Some((part_of, parts)) => {
+                    cells.part_of.extend(part_of);
+                    Divided { parts, ..whole }
+                }
+                None => Divided { parts: sides * sides, fine: WHOLE, ..whole },
+            };
+            cells.count += divided.parts;
+            cells.divided.push(divided);
         }
         cells
     }
@@ -151,6 +152,17 @@ impl Cells {
     }
 }
 
+/// Most cells along an edge where so many triangles are divided.
+fn most_sides(triangles: usize) -> u32 {
+    let even = (MOST_CELLS / triangles.max(1)).isqrt() as u32;
+    even.clamp(1, MOST_SIDES)
+}
+
+/// Whether so many fine places are no more than a triangle's share of the area allows: slivers have many, and nothing stands between them.
+fn are_few(places: f64, share: f64) -> bool {
+    places <= parts::MOST_PLACES * share
+}
+
 impl Divided {
     /// The same triangle in fine places.
     fn fine(&self) -> Self {
@@ -178,7 +190,22 @@ impl Divided {
 
 #[cfg(test)]
 mod tests {
-    use super::Divided;
+    use super::{Divided, MOST_CELLS, MOST_SIDES, are_few, most_sides, parts};
+
+    /// Few triangles have all the cells that they call for; however many there are, the number of cells stays within its bound.
+    #[test]
+    fn cells_stay_within_their_bound() {
+        assert_eq!([0, 12, 1000].map(most_sides), [MOST_SIDES; 3]);
+        for triangles in [2000, 100_000, 1_000_000, (1 << 30) - 1] {
+            let cells = triangles * (most_sides(triangles) as usize).pow(2);
+            assert!(cells <= MOST_CELLS.max(triangles), "{cells} cells of {triangles}");
+        }
+        // Of twelve triangles of a box all are looked at, of thousands of slivers as long as the scene none.
+        let places = |sides: u32| f64::from(parts::FINE * sides).powi(2);
+        assert!(are_few(places(37), 1.0 / 12.0) && !are_few(places(MOST_SIDES), 1.0 / 2000.0));
+        // Twin: all that they call for would be too many to be counted.
+        assert!(u32::try_from(1_100_000 * u64::from(MOST_SIDES).pow(2)).is_err());
+    }
 
     /// Every cell is found from its middle, cells have the same area, and a point is nearest to the middle of its own.
     #[test]

@@ -8,8 +8,9 @@ use raytrace::Ray;
 
 /// Places along an edge of a cell that are told apart.
 pub(super) const FINE: u32 = 4;
-/// Most fine places of all triangles: beyond, cells stay whole, lest meshes of long slivers take minutes.
-pub(super) const MOST_PLACES: usize = 1 << 19;
+/// Most fine places of all triangles, each by its share of the area: beyond, its cells stay whole, lest meshes of long slivers take minutes.
+/// Compact triangles need the twentieth part.
+pub(super) const MOST_PLACES: f64 = (1 << 21) as f64;
 /// What is lower than this share of the way between two places does not part them.
 const CLEAR: f32 = 0.25;
 
