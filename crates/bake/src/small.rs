@@ -8,6 +8,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Most points that the surface of one object is looked at; what takes more is very long and thin, and is left out.
 const MOST_POINTS: usize = 1 << 16;
+/// Most cubes of all objects; the smallest objects are left out where there would be more, as blades of a meadow.
+const MOST_CUBES: usize = 1 << 22;
 /// Cubes along the size of an object.
 const CUBES: f32 = 2.0;
 
@@ -33,6 +35,7 @@ impl Cube {
 /// The cubes of all objects between two sizes whose material blocks light. An object is a connected component of a mesh.
 pub(crate) fn cubes(scene: &Scene, blocks: &dyn Fn(usize) -> bool, [smallest, largest]: [f32; 2]) -> Vec<Cube> {
     let mut cubes = Vec::new();
+    let mut smallest = smallest;
     for (m, mesh) in (0..).zip(&scene.meshes).filter(|(_, mesh)| blocks(mesh.material as usize)) {
         let first = first_vertices(mesh);
         let mut objects: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
@@ -43,10 +46,20 @@ pub(crate) fn cubes(scene: &Scene, blocks: &dyn Fn(usize) -> bool, [smallest, la
             let size = size(mesh, &triangles);
             if size >= smallest && size < largest {
                 cubes.extend(cubes_of(mesh, &triangles, size, [m, first]));
+                smallest = leave_out(&mut cubes, smallest, MOST_CUBES);
             }
         }
     }
     cubes
+}
+
+/// Leaves out the smallest objects until no more than `most` cubes are left; from which size on objects still count.
+fn leave_out(cubes: &mut Vec<Cube>, mut smallest: f32, most: usize) -> f32 {
+    while cubes.len() > most {
+        smallest = 2.0 * cubes.iter().map(|cube| cube.size).fold(f32::INFINITY, f32::min);
+        cubes.retain(|cube| cube.size >= smallest);
+    }
+    smallest
 }
 
 /// Of each vertex of a mesh the first one that it is connected with; vertices at one place are one.
@@ -173,6 +186,17 @@ mod tests {
                 assert!(extent[2] < 0.6 || (found / f64::from(extent[2]) - 1.0).abs() > 0.1);
             }
         }
+    }
+
+    /// Too many cubes cost the smallest objects theirs, whole, and what is as small is not taken after them.
+    #[test]
+    fn the_smallest_objects_are_left_out() {
+        let of_size = |size: f32| (0..10).map(move |k| Cube { centre: Vec3::splat(k as f32), size, object: [0, 0] });
+        let mut cubes: Vec<Cube> = [0.1, 0.15, 1.0, 3.0].into_iter().flat_map(of_size).collect();
+        assert_eq!(leave_out(&mut cubes, 0.05, 25), 0.2);
+        assert_eq!(cubes.len(), 20, "both below twice the smallest");
+        // Twin: where there is room all stay.
+        assert_eq!((leave_out(&mut cubes, 0.2, 20), cubes.len()), (0.2, 20));
     }
 
     /// Cubes cover the whole surface, however long and thin its triangles.
