@@ -149,6 +149,27 @@ fn pictures_that_nothing_stands_in_for_are_refused_with_the_tool() {
     assert!(broken.contains("gltf-transform ktxdecompress"), "{broken}");
 }
 
+/// Views that claim more bytes than numbers can count are too many, whatever was claimed before them.
+#[test]
+fn views_beyond_counting_are_refused() {
+    let view = |count: u64| {
+        format!(
+            r#""extensions":{{"EXT_meshopt_compression":{{"buffer":0,"byteLength":20,"byteStride":4,"count":{count},
+            "mode":"ATTRIBUTES"}}}}"#
+        )
+    };
+    let with = |counts: [u64; 2]| {
+        let mut text = triangle(&format!("{}{SHOWN}", mesh("")));
+        for (plain, count) in [r#""byteLength":36}"#, r#""byteLength":24}"#].into_iter().zip(counts) {
+            text = text.replacen(plain, &format!("{},{}}}", &plain[..plain.len() - 1], view(count)), 1);
+        }
+        made::load("a.gltf", text)
+    };
+    let error = with([1, 1 << 62]).expect_err("too many").to_string();
+    assert!(error.contains("bytes after decompression"), "{error}");
+    assert!(with([1, 1]).is_ok(), "can fail: the plain data stand in for what is broken");
+}
+
 /// Broken compressed data are an error or a scene, never a panic, and soon.
 #[test]
 fn no_changed_byte_does_worse_than_an_error() {

@@ -38,12 +38,12 @@ fn compression(view: &buffer::View) -> Option<&Value> {
 /// Decompresses all views that are compressed.
 pub(super) fn decode_all(document: &Document<'_>, report: &mut Report) -> Result<HashMap<usize, View>, Error> {
     let mut decoded = HashMap::new();
-    let (mut workspace, mut total) = (Workspace::default(), 0);
+    let (mut workspace, mut total) = (Workspace::default(), 0u64);
     for (index, view) in document.root.buffer_views.iter().enumerate() {
         let Some(json) = compression(view) else { continue };
         let object = format!("bufferViews[{index}].{}", NAMES[1]);
         let stream = Stream::read(json).ok_or_else(|| document.invalid(&object, "lacks a member or has an odd one"))?;
-        total += stream.count.saturating_mul(stream.stride);
+        total = total.saturating_add(stream.count.saturating_mul(stream.stride));
         if total > MAX_BYTES {
             return Err(document.invalid(object, format!("more than {MAX_BYTES} bytes after decompression")));
         }
