@@ -224,7 +224,7 @@ impl Draft {
         for chart in small {
             let Some(index) = sheet.iter().position(|&mesh| mesh == chart.mesh) else { continue };
             // Whole steps of the square root of 2 in length.
-            let steps = (AIM / chart.texels).log2().ceil().clamp(1.0, 40.0) as i32;
+            let steps = libm::log2(AIM / chart.texels).ceil().clamp(1.0, 40.0) as i32;
             let factor = (0..steps).fold(1.0f32, |factor, _| factor * std::f32::consts::SQRT_2);
             let draft = &self.meshes[index];
             let own = draft.charts[chart.triangle];
