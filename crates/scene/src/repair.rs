@@ -6,6 +6,8 @@ use crate::{Mesh, Report, Scene, Warning, normals, tangents, vertices};
 
 /// Height over longest edge below which a triangle has no area: less than the rounding of its own corners.
 const FLATNESS: f64 = 1e-7;
+/// Largest coordinate, metres (2^38): no ray is traced farther away.
+const FARTHEST: f32 = 274_877_906_944.0;
 /// Cosine of 44 degrees: OBJ meshes without normals are smooth below that angle between faces, so that 45-degree
 /// bevels and right angles stay sharp.
 pub(crate) const SMOOTH_CREASE: f64 = 0.719_339_800_338_651_1;
@@ -37,7 +39,7 @@ pub(crate) fn finish(scene: &mut Scene) {
     scene.report = report;
 }
 
-/// Drops triangles with a position that is not finite (a warning) and those without area (counted).
+/// Drops triangles with a position that is not finite, or too far away for rays (warnings), and those without area (counted).
 fn drop_broken_triangles(mesh: &mut Mesh, report: &mut Report) {
     let before = mesh.triangles.len();
     let positions = &mesh.positions;
@@ -45,6 +47,15 @@ fn drop_broken_triangles(mesh: &mut Mesh, report: &mut Report) {
     let not_finite = before - mesh.triangles.len();
     if not_finite > 0 {
         let message = format!("{not_finite} triangles with positions that are not finite were dropped");
+        report.warnings.push(Warning { object: mesh.name.clone(), message });
+    }
+    let before = mesh.triangles.len();
+    mesh.triangles.retain(|t| t.iter().all(|&i| positions[i as usize].abs().max_element() <= FARTHEST));
+    let too_far = before - mesh.triangles.len();
+    if too_far > 0 {
+        let message = format!(
+            "{too_far} triangles with coordinates beyond 2.7e11 m were dropped, since no ray goes so far: scale the scene down"
+        );
         report.warnings.push(Warning { object: mesh.name.clone(), message });
     }
     let before = mesh.triangles.len();

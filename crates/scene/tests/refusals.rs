@@ -176,6 +176,7 @@ fn broken_obj_is_refused_with_its_line() {
             ("no vertex", corners("f /1 2 3"), &["line 6", "names no vertex"]),
             ("not finite", "v nan 0 0\nv 1 inf 0\nv 0 1 0\nf 1 2 3\n".into(), &["no triangle", "not finite"]),
             ("flat", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n".into(), &["no triangle", "zero area"]),
+            ("far", "v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n".into(), &["no triangle", "scale the scene down"]),
         ],
     );
 }
