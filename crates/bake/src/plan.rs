@@ -102,12 +102,7 @@ fn decide(facts: &Facts, survey: Survey, traced: u64, settings: &Settings) -> Pl
     let drawn = |effect, called_for: bool| allowed(settings, effect) && called_for;
     let visibility = wanted(Effect::Visibility, traced > 0);
     let gloss_stake = facts.reflectance() * survey.coverage[1].min(1.0);
-    let named = matches!(&settings.effects, Effects::Only(list) if list.contains(&Effect::Glossy));
-    let glossy = visibility
-        && allowed(settings, Effect::Specular)
-        && allowed(settings, Effect::Glossy)
-        && facts.shiny.any()
-        && (forced || named || gloss_stake > GLOSS_WORTH);
+    let glossy = visibility && is_gloss_worth(facts, settings, gloss_stake);
     let bounced = [facts.mean_albedo * survey.coverage[0], facts.largest_albedo * survey.coverage[1]];
     let tolerance = f64::from(tolerance(settings.quality));
     let returned = if glossy { facts.largest_albedo.max(facts.reflectance()) } else { facts.largest_albedo };
@@ -191,6 +186,21 @@ fn meshes(facts: &Facts, d: &Decisions) -> Vec<MeshPlan> {
 /// Share of the light from where reflections that are blocked in the right places are worth their rays and bytes; below it one number per
 /// vertex, its openness, stands for them.
 const GLOSS_WORTH: f32 = 0.1;
+
+/// Whether reflections can be worth simulating by direction, whatever blocks the light: a bound on what [`plan`] decides that needs no ray.
+pub(crate) fn may_be_glossy(scene: &Scene, settings: &Settings) -> bool {
+    let facts = Facts::of_materials(scene, settings, false);
+    is_gloss_worth(&facts, settings, facts.reflectance())
+}
+
+/// Whether reflections are simulated by direction where so large a share of the light is at stake.
+fn is_gloss_worth(facts: &Facts, settings: &Settings, stake: f32) -> bool {
+    let named = matches!(&settings.effects, Effects::Only(list) if list.contains(&Effect::Glossy));
+    allowed(settings, Effect::Specular)
+        && allowed(settings, Effect::Glossy)
+        && facts.shiny.any()
+        && (is_forced(settings) || named || stake > GLOSS_WORTH)
+}
 
 /// Change of the result below which a bounce is not worth simulating.
 pub(crate) fn tolerance(quality: Quality) -> f32 {

@@ -3,7 +3,7 @@
 use crate::bake::plan_with;
 use crate::extras::Extras;
 use crate::mirror::shining;
-use crate::plan::simulates;
+use crate::plan::{may_be_glossy, simulates};
 use crate::refine::refined;
 use crate::{Error, settings};
 use coeff_io::{Effect, Refine, Settings};
@@ -35,9 +35,10 @@ pub struct StorageChoice {
 /// As [`crate::plan`].
 pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Error> {
     settings::check(settings)?;
-    let plan = plan_with(scene, settings, &Extras::default())?;
     let vertices = |reason: String| Ok(StorageChoice { texels: None, reason });
-    if !simulates(&plan, Effect::Glossy) {
+    // Most scenes need no plan, which takes as long to find as all refinement.
+    let glossy = || Ok(simulates(&plan_with(scene, settings, &Extras::default())?, Effect::Glossy));
+    if !(may_be_glossy(scene, settings) && glossy()?) {
         return vertices("vertices: no reflection is simulated by direction".into());
     }
     let shines = shining(scene);
