@@ -263,12 +263,11 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Receivers inside bodies look again from where their surface comes out.
+    /// Receivers inside bodies or under shells look again from where their surface comes out.
     fn move_out(&mut self, scene: &Scene) -> Result<Vec<Chunk>, Error> {
-        let inside: Vec<bool> =
-            self.findings[..self.receivers.permanent].iter().map(|finding| finding.is_inside()).collect();
-        self.achieved.repairs.inside = inside.iter().filter(|&&is| is).count() as u32;
-        let moved = emerge(scene, self.gatherer.world, &self.receivers, &inside);
+        let findings = &self.findings[..self.receivers.permanent];
+        self.achieved.repairs.inside = findings.iter().filter(|finding| finding.is_inside()).count() as u32;
+        let moved = emerge(scene, self.gatherer.world, &self.receivers, findings);
         if moved.is_empty() {
             return Ok(Vec::new());
         }
@@ -302,7 +301,8 @@ impl<'a> Run<'a> {
         let mut wanted = Wanted { worth: tolerance(self.settings.quality), ..Wanted::default() };
         let mut sink = |id: u32, seen: &Gathered| {
             last.set_direct(id, &seen.transfer, &seen.tinted);
-            let finding = Finding { openness: seen.openness, inside_share: seen.inside_share };
+            let Gathered { openness, inside_share, behind_share, .. } = *seen;
+            let finding = Finding { openness, inside_share, behind_share };
             findings[id as usize] = finding;
             errors[id as usize] = seen.error;
             achieved.visibility_rays += seen.visibility_rays;
@@ -316,7 +316,7 @@ impl<'a> Run<'a> {
                 // It looked before, from where it was moved away.
                 glints.row_mut(id).fill(0.0);
             }
-            if !finding.is_inside() {
+            if !finding.is_inside() && !finding.is_hidden() {
                 wanted.note(id, seen, world);
             }
         };

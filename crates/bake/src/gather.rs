@@ -14,6 +14,7 @@ use crate::found::mean;
 use crate::hit::{NearPoint, PackedHit, near_points, packed};
 use crate::mirror::Mirrors;
 use crate::receivers::Receiver;
+use crate::repair::{is_hidden, is_inside};
 use crate::world::World;
 use coeff_io::Quality;
 use glam::{Mat3, Vec3};
@@ -57,6 +58,8 @@ pub(crate) struct Gathered {
     pub(crate) bounce_rays: u64,
     /// Share of the blocked directions that meet the inside of a body.
     pub(crate) inside_share: f32,
+    /// Share of the blocked directions that meet the back of a surface with one side.
+    pub(crate) behind_share: f32,
     /// Blocking surfaces; their weights sum to `1 - openness`.
     pub(crate) hits: Vec<PackedHit>,
     /// Points of surfaces so near that their vertices cannot speak for them; some hits refer to these.
@@ -319,7 +322,7 @@ impl Gatherer<'_> {
 
     fn pack(&self, blockers: Blockers, index: u32, out: &mut Gathered) {
         out.bounce_rays = blockers.rays;
-        out.inside_share = blockers.inside_share;
+        (out.inside_share, out.behind_share) = (blockers.inside_share, blockers.behind_share);
         if !self.hits || blockers.found.is_empty() {
             return;
         }
@@ -327,7 +330,8 @@ impl Gatherer<'_> {
         let mut weighed: Vec<(Hit, Vec3)> =
             found.iter().map(|(_, hit, weight)| (*hit, self.world.sent(hit) * *weight)).collect();
         weighed.iter_mut().zip(&blockers.filters).for_each(|((_, reflected), filter)| *reflected *= *filter);
-        if index < self.permanent && !crate::repair::is_inside(out.openness, out.inside_share) {
+        let covered = is_inside(out.openness, out.inside_share) || is_hidden(out.openness, out.behind_share);
+        if index < self.permanent && !covered {
             out.near = near_points(self.world, &weighed, self.worth);
         }
         out.hits.extend(weighed.iter().map(|(hit, reflected)| packed(self.world, hit, *reflected, &out.near)));

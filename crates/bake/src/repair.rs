@@ -24,9 +24,15 @@ pub(crate) struct Repair {
 pub(crate) struct Finding {
     pub(crate) openness: f32,
     pub(crate) inside_share: f32,
+    pub(crate) behind_share: f32,
 }
 
 impl Finding {
+    /// Whether the receiver stands under a shell that hides it.
+    pub(crate) fn is_hidden(self) -> bool {
+        is_hidden(self.openness, self.behind_share)
+    }
+
     /// Whether the receiver stands inside a body.
     pub(crate) fn is_inside(self) -> bool {
         is_inside(self.openness, self.inside_share)
@@ -39,38 +45,64 @@ pub(crate) fn is_inside(openness: f32, inside_share: f32) -> bool {
     openness < 0.5 && inside_share > INSIDE
 }
 
+/// Open share below which a point may be hidden.
+const HIDDEN: f32 = 0.02;
+/// More than this share of what it sees being the backs of surfaces with one side means that it is.
+const BEHIND: f32 = 0.5;
+
+/// Whether a point of this open share, which meets backs of surfaces with one side in this share of its blocked directions, lies in the dark
+/// under a shell that is drawn from its other side alone: no view shows it.
+pub(crate) fn is_hidden(openness: f32, behind_share: f32) -> bool {
+    openness < HIDDEN && behind_share > BEHIND
+}
+
 /// Share of the way to where an edge meets a body that a receiver is moved: just before it.
 const BEFORE: f32 = 0.98;
 
-/// For receivers inside bodies with a sound neighbour: where the edge from there runs into the body. Seen from that point
-/// the surface is as dark as it is along the line where it leaves the body, which the mean of the neighbours is not.
-pub(crate) fn emerge(scene: &Scene, world: &World<'_>, receivers: &Receivers, inside: &[bool]) -> Vec<(u32, Vec3)> {
-    if !inside.contains(&true) {
+/// For receivers inside bodies, or hidden under shells, with a sound neighbour: where the edge from there runs into the body. Seen from that
+/// point the surface is as dark as it is along the line where it leaves the body, which the mean of the neighbours is not. What is drawn from
+/// a hidden vertex to one that is seen would be too dark along the rim of the shell.
+pub(crate) fn emerge(
+    scene: &Scene,
+    world: &World<'_>,
+    receivers: &Receivers,
+    findings: &[Finding],
+) -> Vec<(u32, Vec3)> {
+    let is_covered = |finding: &Finding| finding.is_inside() || finding.is_hidden();
+    if !findings.iter().any(is_covered) {
         return Vec::new();
     }
     let neighbours = Neighbours::of(scene, receivers);
-    let stuck = |id: u32| inside[id as usize] || !receivers.list[id as usize].sound;
+    let stuck = |id: u32| is_covered(&findings[id as usize]) || !receivers.list[id as usize].sound;
     let way_out = |id: u32| {
         let sound = neighbours.around(id).iter().copied().filter(|&n| !stuck(n));
         let to = &receivers.list[id as usize];
+        let body = |triangle| world.bodies.bound(triangle);
+        let shell = |triangle| !world.is_two_sided(triangle);
+        let covers: &dyn Fn(u32) -> bool = if findings[id as usize].is_inside() { &body } else { &shell };
         let points = sound.filter_map(|n| {
             let from = &receivers.list[n as usize];
-            Some(from.position + entry(world, from, to)? * (to.position - from.position))
+            Some(from.position + entry_into(world, from, to, covers)? * (to.position - from.position))
         });
         let home = receivers.list[id as usize].vertex;
         points.min_by(|a, b| a.distance_squared(home).total_cmp(&b.distance_squared(home)))
     };
-    let ids: Vec<u32> = (0..inside.len() as u32).filter(|&id| inside[id as usize]).collect();
+    let ids: Vec<u32> = (0..).zip(findings).filter(|(_, finding)| is_covered(finding)).map(|(id, _)| id).collect();
     ids.into_par_iter().filter_map(|id| way_out(id).map(|point| (id, point))).collect()
 }
 
 /// Share of the way from one receiver to another just before it runs into a body.
 pub(crate) fn entry(world: &World<'_>, from: &Receiver, to: &Receiver) -> Option<f32> {
+    entry_into(world, from, to, &|triangle| world.bodies.bound(triangle))
+}
+
+/// The same of the first front of a triangle that `covers` names.
+fn entry_into(world: &World<'_>, from: &Receiver, to: &Receiver, covers: &dyn Fn(u32) -> bool) -> Option<f32> {
     let start = offset_origin(from.position, from.geometric_normal);
     let end = offset_origin(to.position, from.geometric_normal);
     let mut ray = Ray { t_max: 1.0, ..Ray::new(start, end - start) };
     let mut hit = world.closest(&ray)?;
-    while !(hit.front && world.bodies.bound(hit.triangle)) {
+    while !(hit.front && covers(hit.triangle)) {
         ray.t_min = hit.t.next_up();
         hit = world.closest(&ray)?;
     }

@@ -5,11 +5,8 @@
 
 use super::plate::{NONE, Plate};
 use crate::arrival::Arrival;
+use crate::repair;
 
-/// Open share below which a texel may be hidden.
-const OPEN: f32 = 0.02;
-/// More than this share of what it sees being the backs of surfaces with one side means that it is.
-const BEHIND: f32 = 0.5;
 /// Texels from one that is seen up to which filters read.
 const READ: usize = 2;
 
@@ -23,7 +20,7 @@ pub(crate) struct Hidden {
 
 /// Whether what is found at a texel of some extent on its surface tells that no view shows it.
 pub(crate) fn is_hidden(arrival: &Arrival, extent: f32) -> bool {
-    arrival.openness < OPEN && arrival.behind_share > BEHIND || arrival.cover < extent
+    repair::is_hidden(arrival.openness, arrival.behind_share) || arrival.cover < extent
 }
 
 /// Fills texels inside of bodies from their chart, and hidden ones near those that are seen. Returns the hidden ones of charts that have none of
