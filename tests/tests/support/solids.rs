@@ -54,7 +54,16 @@ impl<'a> Solids<'a> {
 
     /// Whether somebody who stands outside of things can see a place.
     pub(crate) fn shows(&self, receiver: &Receiver, rng: &mut Rng) -> bool {
-        !self.bury(receiver, rng) && !self.is_sealed(receiver, rng)
+        !self.is_under_shell(receiver, rng) && !self.bury(receiver, rng) && !self.is_sealed(receiver, rng)
+    }
+
+    /// Whether a place sees next to no sky and mostly backs that are not drawn, those of masked shells too: the dark there is not seen.
+    fn is_under_shell(&self, receiver: &Receiver, rng: &mut Rng) -> bool {
+        let origin = offset_origin(receiver.position, receiver.geometric_normal);
+        let is_undrawn =
+            |hit: &Hit| !hit.front && !self.scene.material(self.parts[hit.triangle as usize][0]).double_sided;
+        let seen = self.look(origin, receiver.normal, PROBES[0], rng, &is_undrawn);
+        1.0 - seen.blocked <= SEALED[0] && seen.backs > 0.5 * seen.blocked
     }
 
     /// Whether no walk from front to front finds the sky and most end on backs: a pocket between things that run into each other. What
