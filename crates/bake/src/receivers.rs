@@ -149,12 +149,18 @@ impl Receiver {
 /// Share of the way from a vertex to the middle of its triangles by which a receiver on a border is drawn in.
 /// Exactly on the border, rays towards a wall that stands there would start inside the wall.
 const DRAW_IN: f32 = 1e-3;
+/// The least that it is drawn in by, over its largest coordinate: far from the origin small steps are lost to rounding. Four times what rays
+/// start off the surface by.
+const LEAST: f32 = 1.0 / 524_288.0;
 
 /// Draws a point in from the border of its mesh, but never below the surface.
 fn drawn_in(position: Vec3, centre: Vec3, normal: Vec3) -> Vec3 {
     let way = centre - position;
     let sunk = way.dot(normal).min(0.0);
-    position + DRAW_IN * (way - sunk * normal)
+    let way = way - sunk * normal;
+    // A triangle of few steps of its coordinates is not left.
+    let least = (LEAST * position.abs().max_element() / way.length()).min(0.25);
+    position + DRAW_IN.max(least) * way
 }
 
 /// Sums over the triangles around each vertex of a mesh.
