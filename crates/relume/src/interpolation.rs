@@ -26,7 +26,7 @@ pub(crate) fn warning(prt: &Prt) -> Option<String> {
     let mesh = crate::bake::mesh_of(prt, prt.achieved.worst_between?);
     Some(format!(
         "warning: the triangles of '{mesh}' are too large for its light: between its vertices the transfer is off by up to {}; \
-         bake with --refine auto, or divide it",
+         bake with --refine auto (with --time, allow more), or divide it",
         percent(worst)
     ))
 }

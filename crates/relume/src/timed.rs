@@ -57,16 +57,18 @@ pub(crate) fn bake(
     keep: &dyn Fn(&Prt) -> Result<()>,
     console: &Console,
 ) -> Result<Prt> {
-    let ladder = Ladder { settings, extras, deadline, keep, console };
+    let ladder = Ladder { extras, deadline, keep, console };
     let first = Settings { quality: Quality::Rays(FIRST_RAYS), bounces: Bounces::Fixed(0), ..settings.clone() };
-    let (mut best, rung) = ladder.step(scene, &first)?;
+    // What is done of the splitting that was asked for.
+    let mut split = Refine::Off;
+    let (mut best, rung) = ladder.step(scene, &first, split)?;
     let mut speed = Speed::of(&first, rung, receivers(scene));
     let mut scene = std::borrow::Cow::Borrowed(scene);
     let (mut before, mut rungs) = (first, Vec::new());
     while rungs.is_empty() {
         let Some(wanted) = coarser(&before, settings, speed, receivers(&scene), ladder.left()) else { return Ok(best) };
         let rung;
-        (best, rung) = ladder.step(&scene, &wanted)?;
+        (best, rung) = ladder.step(&scene, &wanted, split)?;
         speed = Speed::of(&wanted, rung, receivers(&scene));
         if let Quality::Error(_) = wanted.quality {
             rungs.push(rung);
@@ -81,14 +83,16 @@ pub(crate) fn bake(
         if speed.coarse(settings, receivers(&fine)) < SHARE * ladder.left() {
             let wanted = Settings { quality: Quality::Error(COARSEST), ..settings.clone() };
             let rung;
-            (best, rung) = ladder.step(&fine, &wanted)?;
+            split = settings.refine;
+            (best, rung) = ladder.step(&fine, &wanted, split)?;
             rungs = vec![rung];
             scene = std::borrow::Cow::Owned(fine.into_owned());
         }
     }
     while !exhausted(&best) {
         let Some(error) = next(&rungs, ladder.left()) else { break };
-        let (prt, rung) = ladder.step(&scene, &Settings { quality: Quality::Error(error), ..settings.clone() })?;
+        let wanted = Settings { quality: Quality::Error(error), ..settings.clone() };
+        let (prt, rung) = ladder.step(&scene, &wanted, split)?;
         best = prt;
         rungs.push(rung);
     }
@@ -156,7 +160,6 @@ fn coarser(before: &Settings, settings: &Settings, speed: Speed, receivers: f64,
 
 /// What all bakes have in common.
 struct Ladder<'a> {
-    settings: &'a Settings,
     extras: &'a Extras,
     deadline: Instant,
     keep: &'a dyn Fn(&Prt) -> Result<()>,
@@ -168,8 +171,8 @@ impl Ladder<'_> {
         self.deadline.saturating_duration_since(Instant::now()).as_secs_f64()
     }
 
-    /// One bake of triangles that are split already, or not to be split.
-    fn step(&self, scene: &Scene, wanted: &Settings) -> Result<(Prt, Rung)> {
+    /// One bake of triangles that are split already, as the file will say, or not to be split.
+    fn step(&self, scene: &Scene, wanted: &Settings, split: Refine) -> Result<(Prt, Rung)> {
         let start = Instant::now();
         let wanted = Settings { refine: Refine::Off, ..wanted.clone() };
         let (progress, traced) = (self.console.progress(), OnceLock::new());
@@ -181,7 +184,7 @@ impl Ladder<'_> {
             show(now)
         };
         let mut prt = bake::bake_with(scene, &wanted, self.extras, &watch).map_err(fault)?;
-        prt.settings.refine = self.settings.refine;
+        prt.settings.refine = split;
         (self.keep)(&prt)?;
         let reached = reached(&prt);
         // The fewest rays that tell an error often reach a smaller one than was asked for: that is what is to be beaten.

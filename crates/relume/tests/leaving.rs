@@ -19,7 +19,7 @@ fn files(folder: &Path) -> Vec<String> {
 /// A stage of a command that takes minutes: arguments, the line that tells it.
 const STAGES: [(&[&str], &str); 4] = [
     (&["bake", "builtin:atrium", "-o", "a.prt", "--rays", "65536", "--bands", "8", "--refine", "off"], "visibility"),
-    (&["bake", "builtin:atrium", "-o", "a.prt", "--refine", "0.05", "--rays", "4096"], "preparation"),
+    (&["bake", "builtin:atrium", "-o", "a.prt", "--refine", "0.02", "--rays", "4096"], "preparation"),
     (&["reference", "builtin:atrium", "--probe", "builtin:sky", "-o", "a.exr", "--spp", "512"], "rows"),
     (&["cost", "builtin:atrium", "--probe", "builtin:sky", "-o", "new/inner", "--budget", "600"], "visibility"),
 ];
