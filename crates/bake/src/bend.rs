@@ -15,8 +15,6 @@ use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
 use glam::Vec3;
 use rayon::prelude::*;
-use raytrace::Ray;
-use sampling::frame::Frame;
 use scene::{Mesh, Scene};
 use sh_math::Bands;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -149,7 +147,7 @@ impl<'a> Bends<'a> {
         let faces = FaceSums::of(mesh);
         // An end inside a body takes its light from where it is moved to.
         steep.retain(|one| {
-            one.threshold == BEND || one.edge.iter().all(|&v| !self.is_buried(&at_vertex(mesh, &faces, v)))
+            one.threshold == BEND || one.edge.iter().all(|&v| !self.world.surrounds(&faces.receiver(mesh, v as usize)))
         });
         for share in [0.25, 0.75] {
             let unsure: Vec<usize> = (0..steep.len()).filter(|&k| steep[k].bend <= steep[k].threshold).collect();
@@ -161,17 +159,6 @@ impl<'a> Bends<'a> {
             }
         }
         Ok(steep.into_iter().filter(|one| one.bend > one.threshold).map(|one| one.edge).collect())
-    }
-
-    /// Whether most of three rays from a receiver meet a body from within.
-    fn is_buried(&self, receiver: &Receiver) -> bool {
-        let origin = self.world.start(receiver.position, receiver.geometric_normal, receiver.rounding);
-        let frame = Frame::from_normal(receiver.normal);
-        let meets_inside = |way: &[f32; 3]| {
-            let ray = Ray::new(origin, frame.to_world(Vec3::from_array(*way)));
-            self.world.closest(&ray).is_some_and(|hit| self.world.bodies.is_inside(&hit))
-        };
-        TRIPOD.iter().filter(|way| meets_inside(way)).count() > 1
     }
 
     /// Tells of vertices that took the middles of edges, in their order.
@@ -202,7 +189,7 @@ impl<'a> Bends<'a> {
     ) -> Result<(), Error> {
         let mesh = &scene.meshes[index];
         let faces = FaceSums::of(mesh);
-        let receivers: Vec<Receiver> = ends.iter().map(|&v| at_vertex(mesh, &faces, v as u32)).collect();
+        let receivers: Vec<Receiver> = ends.iter().map(|&v| faces.receiver(mesh, v)).collect();
         let new = self.look(&receivers, two_sided(scene, index), (Some(watched.0), watched.1))?;
         for (v, look) in ends.into_iter().zip(new) {
             self.vertices[index][v] = look;
@@ -290,17 +277,6 @@ struct Steep {
     sums: EdgeSums,
     bend: f32,
     threshold: f32,
-}
-
-/// Three directions at 45 degrees from the normal.
-const TRIPOD: [[f32; 3]; 3] = [[0.707, 0.0, 0.707], [-0.354, 0.612, 0.707], [-0.354, -0.612, 0.707]];
-
-/// The receiver of a vertex of a mesh.
-fn at_vertex(mesh: &Mesh, faces: &FaceSums, vertex: u32) -> Receiver {
-    let v = vertex as usize;
-    Receiver::new(mesh.positions[v], mesh.normals.get(v).copied(), faces.normal[v], faces.centre(v))
-        .0
-        .of_extent(faces.extent)
 }
 
 fn two_sided(scene: &Scene, mesh: usize) -> bool {

@@ -12,10 +12,7 @@ use crate::split::{Edge, EdgePlace as Place, cut, edge_place as place, edges, pl
 use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
-use glam::Vec3;
 use rayon::prelude::*;
-use raytrace::Ray;
-use sampling::frame::Frame;
 use scene::{Mesh, Scene};
 use sh_math::Bands;
 use std::borrow::Cow;
@@ -64,10 +61,7 @@ pub(crate) fn cut_at_exits<'a>(
 /// Finds the exits of a mesh that are worth a vertex.
 fn add_cuts(mesh: &Mesh, gatherer: &Gatherer<'_>, cuts: &mut Cuts) {
     let faces = FaceSums::of(mesh);
-    let receiver = |v: usize| {
-        let shading = mesh.normals.get(v).copied();
-        Receiver::new(mesh.positions[v], shading, faces.normal[v], faces.centre(v)).0.of_extent(faces.extent)
-    };
+    let receiver = |v: usize| faces.receiver(mesh, v);
     let inside: Vec<bool> = (0..mesh.positions.len())
         .into_par_iter()
         .map_init(Worker::new, |worker, v| is_stuck(gatherer, &receiver(v), worker))
@@ -105,28 +99,12 @@ fn turned(mesh: &Mesh, edge: Edge, share: f32) -> f32 {
 
 /// Whether a receiver stands inside a body: three rays rule out most.
 fn is_stuck(gatherer: &Gatherer<'_>, receiver: &Receiver, worker: &mut Worker) -> bool {
-    let world = gatherer.world;
-    let origin = world.start(receiver.position, receiver.geometric_normal, receiver.rounding);
-    let frame = Frame::from_normal(receiver.normal);
-    let meets_inside = |way: [f32; 3]| {
-        let ray = Ray::new(origin, frame.to_world(Vec3::from(way)));
-        world.closest(&ray).is_some_and(|hit| world.bodies.is_inside(&hit))
-    };
-    let [a, b, c] = TRIPOD;
-    let mostly = || match [meets_inside(a), meets_inside(b)] {
-        [true, true] => true,
-        [false, false] => false,
-        _ => meets_inside(c),
-    };
-    if !receiver.sound || !mostly() {
+    if !receiver.sound || !gatherer.world.surrounds(receiver) {
         return false;
     }
     let seen = gatherer.gather(receiver, 0, worker);
     is_inside(seen.openness, seen.inside_share)
 }
-
-/// Three directions at 45 degrees from the normal.
-const TRIPOD: [[f32; 3]; 3] = [[0.707, 0.0, 0.707], [-0.354, 0.612, 0.707], [-0.354, -0.612, 0.707]];
 
 /// The ends of ways out of a body with the shares of the ways from there to just before it, where these see differently.
 fn exits(
@@ -152,6 +130,7 @@ fn exits(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     /// Meshes that share an edge cut it at the same place, also where one has -0 for 0 and has the ends the other way round.
     #[test]

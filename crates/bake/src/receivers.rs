@@ -200,6 +200,13 @@ impl FaceSums {
         sums
     }
 
+    /// The receiver of a vertex of the mesh.
+    pub(crate) fn receiver(&self, mesh: &Mesh, vertex: usize) -> Receiver {
+        let shading = mesh.normals.get(vertex).copied();
+        let (receiver, _) = Receiver::new(mesh.positions[vertex], shading, self.normal[vertex], self.centre(vertex));
+        receiver.of_extent(self.extent)
+    }
+
     pub(crate) fn centre(&self, vertex: usize) -> Vec3 {
         let at = self.positions[vertex];
         if self.area[vertex] > 0.0 { at + self.centre[vertex] / self.area[vertex] } else { at }

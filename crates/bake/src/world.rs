@@ -9,6 +9,7 @@ use crate::start;
 use crate::transmittance::Translucent;
 use glam::Vec3;
 use raytrace::{Hit, Ray, Tracer};
+use sampling::frame::Frame;
 use scene::{AlphaMode, Mesh, Scene};
 use sh_math::brdf::{DIELECTRIC, MEAN_DIFFUSE_LOSS, mean_environment_brdf};
 
@@ -16,6 +17,9 @@ use sh_math::brdf::{DIELECTRIC, MEAN_DIFFUSE_LOSS, mean_environment_brdf};
 const MAX_TRIANGLES: usize = (1 << 30) - 1;
 /// Vertices that fit beside the bits of senders.
 const MAX_VERTICES: usize = (1 << 29) - 1;
+
+/// Three directions at 45 degrees from the normal.
+const TRIPOD: [[f32; 3]; 3] = [[0.707, 0.0, 0.707], [-0.354, 0.612, 0.707], [-0.354, -0.612, 0.707]];
 
 /// All surfaces that block light, flattened.
 pub(crate) struct World<'a> {
@@ -194,6 +198,22 @@ impl<'a> World<'a> {
     pub(crate) fn is_one_sided(&self, triangle: u32) -> bool {
         let material = &self.scene.materials[self.scene.meshes[self.locate(triangle).0].material as usize];
         material.alpha == AlphaMode::Opaque && material.transmission <= 0.0 && !material.double_sided
+    }
+
+    /// Whether most of three rays from a receiver meet a body from within.
+    pub(crate) fn surrounds(&self, receiver: &Receiver) -> bool {
+        let origin = self.start(receiver.position, receiver.geometric_normal, receiver.rounding);
+        let frame = Frame::from_normal(receiver.normal);
+        let meets_inside = |way: [f32; 3]| {
+            let ray = Ray::new(origin, frame.to_world(Vec3::from_array(way)));
+            self.closest(&ray).is_some_and(|hit| self.bodies.is_inside(&hit))
+        };
+        let [a, b, c] = TRIPOD;
+        match [meets_inside(a), meets_inside(b)] {
+            [true, true] => true,
+            [false, false] => false,
+            _ => meets_inside(c),
+        }
     }
 
     /// Takes over what becomes of light that each material mirrors.

@@ -6,7 +6,7 @@ use bake::{Receiver, Receivers};
 use coeff_io::{Prt, Refine, Sampler, Settings};
 use glam::{DVec3, Mat3, Vec3};
 use scene::{AlphaMode, Material, Mesh, Scene};
-use support::{fixed, quiet};
+use support::{fixed, quiet, rectangle};
 
 /// Rays by brute force along a side of the square that they are drawn from.
 const SIDE: u32 = 36;
@@ -19,19 +19,6 @@ fn settings() -> Settings {
 
 fn scene(meshes: Vec<Mesh>) -> Scene {
     Scene { meshes, materials: vec![Material::default()], ..Scene::default() }
-}
-
-/// A rectangle of quads from a corner along two sides, seen from where their cross product points.
-fn rectangle(corner: Vec3, along: Vec3, across: Vec3, [columns, rows]: [u32; 2]) -> Mesh {
-    let n = columns + 1;
-    let at = |i: u32| corner + along * ((i % n) as f32 / columns as f32) + across * ((i / n) as f32 / rows as f32);
-    let quads = (0..columns * rows).map(|k| (k % columns) + (k / columns) * n);
-    Mesh {
-        positions: (0..n * (rows + 1)).map(at).collect(),
-        normals: vec![along.cross(across).normalize(); (n * (rows + 1)) as usize],
-        triangles: quads.flat_map(|a| [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]).collect(),
-        ..Mesh::default()
-    }
 }
 
 /// The faces of a box; `lid` and `bottom` may be missing.

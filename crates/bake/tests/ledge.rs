@@ -5,8 +5,8 @@ mod support;
 use bake::refine;
 use coeff_io::{Bounces, Prt, Refine, Sampler, Settings};
 use glam::{Vec3, Vec4};
-use scene::{Material, Mesh, Scene};
-use support::{fixed, quiet, under_white};
+use scene::{Material, Scene};
+use support::{fixed, quiet, rectangle, under_white};
 
 /// Albedo of wall and ledge; the floor is black.
 const ALBEDO: f64 = 0.8;
@@ -18,18 +18,6 @@ const HALF: f32 = 10.0;
 const HEIGHTS: (usize, f64) = (200, 0.5);
 /// Bound of the mean difference over them, as a share of the mean radiance; it may be 1 % of an open receiver's anywhere.
 const AGREE: f64 = 0.02;
-
-fn rectangle(corner: Vec3, along: Vec3, across: Vec3, [columns, rows]: [u32; 2]) -> Mesh {
-    let n = columns + 1;
-    let at = |i: u32| corner + along * ((i % n) as f32 / columns as f32) + across * ((i / n) as f32 / rows as f32);
-    let quads = (0..columns * rows).map(|k| (k % columns) + (k / columns) * n);
-    Mesh {
-        positions: (0..n * (rows + 1)).map(at).collect(),
-        normals: vec![along.cross(across).normalize(); (n * (rows + 1)) as usize],
-        triangles: quads.flat_map(|a| [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]).collect(),
-        ..Mesh::default()
-    }
-}
 
 /// A wall of vertices 25 cm apart on a ledge of 6 cm, above a black floor.
 fn wall() -> Scene {
