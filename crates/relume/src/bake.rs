@@ -10,7 +10,6 @@ use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{interpolation, interrupt, look, output, settings, timed};
 use anyhow::{Context, Result};
-use bake::Extras;
 use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -76,7 +75,8 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     output::check(&options.output, &scene.files)?;
     let probe = options.probe.as_ref().map(|probe| (probe, &options.read));
     let extras = options.extras.of(&mut scene, options.bake.storage, &settings, probe, console)?;
-    console.progress().expect(&stages(&settings, &extras));
+    let texels = extras.maps.is_some() || extras.textures.is_some();
+    console.progress().expect(&stages(&settings, texels, extras.volume.is_some()));
     let began = Instant::now();
     let path = &options.output;
     let write = |prt: &Prt| prt.write(path).with_context(|| format!("cannot write {}", path.display()));
@@ -128,9 +128,8 @@ pub(crate) fn watched(progress: &Progress) -> impl Fn(&bake::Progress) -> Contro
 }
 
 /// The stages that a bake will have, with about how long each takes against the others.
-fn stages(settings: &Settings, extras: &Extras) -> Vec<(&'static str, f64)> {
+pub(crate) fn stages(settings: &Settings, texels: bool, probes: bool) -> Vec<(&'static str, f64)> {
     let bounces = settings.bounces != Bounces::Fixed(0);
-    let texels = extras.maps.is_some() || extras.textures.is_some();
     let stages = [
         ("refinement", 2.0, settings.refine == Refine::Auto),
         ("preparation", 0.5, true),
@@ -138,7 +137,7 @@ fn stages(settings: &Settings, extras: &Extras) -> Vec<(&'static str, f64)> {
         ("backs and near surfaces", 3.0, bounces),
         ("bounces", 1.0, bounces),
         ("texels", 6.0, texels),
-        ("probes", 3.0, extras.volume.is_some()),
+        ("probes", 3.0, probes),
         ("writing", 0.1, true),
     ];
     stages.into_iter().filter(|stage| stage.2).map(|(name, weight, _)| (name, weight)).collect()

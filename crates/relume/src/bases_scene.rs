@@ -133,6 +133,7 @@ fn bake(
 ) -> Result<Directional> {
     let light = fixed_light(environment, settings.bands, window)?;
     let progress = console.progress();
+    progress.expect(&baking::stages(settings, true, false));
     bake::directional(scene, settings, sheets, &light, &baking::watched(&progress)).map_err(baking::fault)
 }
 

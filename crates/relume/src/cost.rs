@@ -104,6 +104,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     };
     let report = {
         let progress = console.progress();
+        progress.expect(&[("study", 1.0)]);
         let began = Instant::now();
         study::cost::study(&request, &|step| {
             let stage = if step.stage.is_empty() { String::new() } else { format!(": {}", step.stage) };

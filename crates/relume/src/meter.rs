@@ -82,7 +82,8 @@ impl Meter {
         }
         let left = self.left(now);
         let elapsed = now.saturating_duration_since(self.began).as_secs_f64();
-        if let Some(left) = left {
+        // What a stage that nobody expected takes says nothing of the whole.
+        if let (Some(left), true) = (left, self.stages.iter().any(|stage| stage.weight > 0.0)) {
             self.shown = self.shown.max((elapsed / (elapsed + left).max(f64::MIN_POSITIVE)).min(NEARLY));
         }
         Reading { share: self.shown, left: left.map(Duration::from_secs_f64), new }
@@ -203,6 +204,20 @@ mod tests {
         assert!(found.windows(2).all(|w| w[0].0.share <= w[1].0.share), "it never runs backwards");
         assert!(found.iter().all(|(reading, _)| (0.0..=1.0).contains(&reading.share)), "a share");
         assert_eq!(found.iter().filter(|(reading, _)| reading.new).count(), 4, "each stage is new once");
+    }
+
+    /// A stage before it is known what will come, such as unwrapping, does not fill the bar.
+    #[test]
+    fn what_comes_before_the_plan_does_not_fill_the_bar() {
+        let start = Instant::now();
+        let shown = |expected: &[(&str, f64)]| {
+            let mut meter = Meter::new(start);
+            meter.expect(expected);
+            play(&mut meter, start, &[("charts", 2.0, 4)]).last().expect("some").0.share
+        };
+        assert_eq!(shown(&[]), 0.0);
+        // Twin: a stage that is the whole of its command fills it.
+        assert_eq!(shown(&[("charts", 1.0)]), NEARLY);
     }
 
     /// Threads tell late what they did: no further pass begins.

@@ -159,6 +159,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let picture = {
         let progress = console.progress();
         let rows = options.size.height;
+        progress.expect(&[("rows", 1.0)]);
         progress.set("rows", 0, u64::from(rows));
         reference::render(&world, &light, &camera, [options.size.width, rows], &settings, &|share| {
             progress.set("rows", (share * rows as f32).round() as u64, u64::from(rows));

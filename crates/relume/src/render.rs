@@ -205,6 +205,7 @@ fn draw_way(
     console: &Console,
 ) -> Result<()> {
     let progress = console.progress();
+    progress.expect(&[("frames", 1.0)]);
     for number in 0..count {
         let image = draw((number + u32::from(count == 1)) as f32 / (count - 1).max(1) as f32)?;
         options.output.numbered(number).write(options.size, &image.linear, &image.display)?;

@@ -114,6 +114,7 @@ fn all_faults(scene: &Scene, sheet: &[usize], size: [u32; 2]) -> Vec<Fault> {
 
 fn unwrap(scene: &mut Scene, sheet: &[usize], options: &Unwrap, console: &Console) -> Result<Atlas> {
     let progress = console.progress();
+    progress.expect(&[("cutting charts", 1.0), ("placing charts", 1.0)]);
     Ok(lightmap::unwrap(scene, sheet, options, &|stage, done, total| progress.set(stage, done, total))?)
 }
 

@@ -90,7 +90,7 @@ pub enum UnwrapError {
 /// Gives the meshes of a sheet second texture coordinates that lie side by side in the unit square, as dense everywhere; those that
 /// they had are replaced. Vertices on the borders of charts are split: triangles keep their order, vertices do not keep their numbers.
 ///
-/// `progress` is told what is being done, how much is done, and of how much (as much where that is not known); it is called from several threads, but never at once.
+/// `progress` is told what is being done, how much is done, and of how much (0 where that is not known); it is called from several threads, but never at once.
 ///
 /// # Errors
 /// [`UnwrapError`] where the sheet would be too large or is too small. The scene is then as it was.
@@ -152,7 +152,7 @@ pub(super) fn library(
             uvunwrap::Stage::Packing => "placing charts",
             _ => "cutting charts",
         };
-        progress(stage, step.done as u64, step.total.unwrap_or(step.done) as u64);
+        progress(stage, step.done as u64, step.total.unwrap_or(0) as u64);
         true
     };
     let atlas = uvunwrap::generate_with_progress(inputs, &library, told)
