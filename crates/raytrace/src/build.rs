@@ -1,12 +1,11 @@
 //! Builds the tree: obvhs makes a binary one, which is folded into nodes of eight and blocks of four.
 
+use crate::binary::binary_tree;
 use crate::tree::{BLOCK, Block, Child, Node, Tree, WIDTH, traceable};
 use glam::{Vec3, Vec3A};
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2_from_tris;
-use obvhs::{BvhBuildParams, triangle::Triangle};
+use obvhs::triangle::Triangle;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
 
 /// Trees built so far, by which a fan's state knows its tree again.
 static TREES: AtomicU64 = AtomicU64::new(0);
@@ -15,9 +14,6 @@ static TREES: AtomicU64 = AtomicU64::new(0);
 const BLOCK_COST: f32 = 0.9;
 const TRIANGLE_COST: f32 = 0.2;
 const NODE_COST: f32 = 0.6;
-
-/// Largest number of references per triangle that splitting large triangles may make.
-const MOST_SPLITS: usize = 3;
 
 /// The triangles that can be hit, with their numbers in the input.
 struct Soup {
@@ -75,6 +71,7 @@ pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]], masked: &[bool]) -
     if soup.triangles.is_empty() {
         return Tree::default();
     }
+    // One triangle per leaf: which triangles share a block is decided here, by what a block costs.
     let binary = binary_tree(&soup.triangles);
     let costs = Costs::of(&binary);
     let mut fold = Fold { binary: &binary, costs, soup: &soup, masked, tree: Tree::default() };
@@ -85,20 +82,6 @@ pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]], masked: &[bool]) -
     let size = |t: &Triangle| t.v0.abs().max(t.v1.abs()).max(t.v2.abs()).max_element();
     tree.reach = soup.triangles.iter().map(size).fold(0.0, f32::max);
     tree
-}
-
-/// One triangle per leaf: which triangles share a block is decided here, by what a block costs.
-fn binary_tree(triangles: &[Triangle]) -> Bvh2 {
-    let mut settings = BvhBuildParams::very_slow_build();
-    settings.max_prims_per_leaf = 1;
-    settings.post_collapse_reinsertion_batch_ratio_multiplier = 0.0;
-    let mut unused = Duration::ZERO;
-    let split = build_bvh2_from_tris(triangles, settings, &mut unused);
-    if split.primitive_indices.len() <= MOST_SPLITS * triangles.len() + 64 {
-        return split;
-    }
-    settings.pre_split = false;
-    build_bvh2_from_tris(triangles, settings, &mut unused)
 }
 
 /// Expected cost of each binary subtree and how many references it holds.

@@ -13,6 +13,7 @@
 //! ```
 
 mod above;
+mod binary;
 mod block;
 mod build;
 mod closest_fan;

@@ -1,0 +1,220 @@
+//! The binary tree over triangles: pairs of neighbours, or halves where those would be found one pair at a time.
+//!
+//! Boxes pair where each is the other's best neighbour (D. Meister, J. Bittner, *Parallel Locally-Ordered Clustering for Bounding Volume
+//! Hierarchy Construction*, 2018). Of an even row of boxes each is as good a neighbour as the other, of a growing one the smaller is better for all:
+//! one pair is found in a round then, and a row of 20,000 pickets takes 20,000 rounds.
+
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use obvhs::splits::split_aabbs_preset;
+use obvhs::triangle::Triangle;
+
+/// Largest number of references per triangle that splitting large triangles may make.
+const MOST_SPLITS: usize = 3;
+/// Boxes on either side among which the best neighbour is looked for, as obvhs does under that name.
+const DISTANCE: PlocSearchDistance = PlocSearchDistance::Medium;
+const NEIGHBOURS: usize = 14;
+/// So few boxes may pair one by one.
+const FEW: usize = 1024;
+/// Boxes that are looked at in all rounds, for each that there is, from which on pairing is slow. Most scenes take 3 to 5.
+const SLOW: usize = 12;
+/// Least part of the boxes on either side of a cut, so that halves of halves come to an end soon.
+const LEAST_PART: usize = 8;
+
+/// Over triangles, one reference to one of them per leaf; large triangles have several.
+pub(crate) fn binary_tree(triangles: &[Triangle]) -> Bvh2 {
+    let (boxes, numbers) = references(triangles);
+    let splits = boxes.len() > triangles.len();
+    let mut tree = if looks(&boxes, SLOW * boxes.len()) >= SLOW * boxes.len() {
+        halved(&boxes, numbers)
+    } else {
+        PlocBuilder::with_capacity(boxes.len()).build(DISTANCE, &boxes, numbers, SortPrecision::U128, 1)
+    };
+    tree.uses_spatial_splits = splits;
+    ReinsertionOptimizer::default().run(&mut tree, 1.0, None);
+    tree
+}
+
+/// The boxes of triangles, and whose they are; large triangles are split, unless there are too many.
+fn references(triangles: &[Triangle]) -> (Vec<Aabb>, Vec<u32>) {
+    let whole: Vec<Aabb> = triangles.iter().map(Triangle::aabb).collect();
+    let own: Vec<u32> = (0..triangles.len() as u32).collect();
+    let (mut largest, mut sum) = (0.0f32, 0.0f32);
+    for one in &whole {
+        largest = one.half_area().max(largest);
+        sum += one.half_area();
+    }
+    let (mut boxes, mut numbers) = (whole.clone(), own.clone());
+    split_aabbs_preset(&mut boxes, &mut numbers, triangles, sum / triangles.len() as f32, largest);
+    if boxes.len() <= MOST_SPLITS * triangles.len() + 64 { (boxes, numbers) } else { (whole, own) }
+}
+
+/// Boxes that pairing looks at in all its rounds, until few are left or `most` were looked at.
+fn looks(boxes: &[Aabb], most: usize) -> usize {
+    let mut left: Vec<Aabb> = along_curve(boxes).into_iter().map(|index| boxes[index]).collect();
+    let mut looked = 0;
+    let mut best = Vec::new();
+    while left.len() > FEW && looked < most {
+        looked += left.len();
+        best.clear();
+        best.extend((0..left.len()).map(|index| best_neighbour(&left, index)));
+        let mut paired = Vec::with_capacity(left.len());
+        for (index, &other) in best.iter().enumerate() {
+            match best[other] == index {
+                true if other > index => paired.push(left[index].union(&left[other])),
+                true => {}
+                false => paired.push(left[index]),
+            }
+        }
+        left = paired;
+    }
+    looked
+}
+
+/// The neighbour with which a box makes the smallest one; the last of those that are as good.
+fn best_neighbour(boxes: &[Aabb], index: usize) -> usize {
+    let near = index.saturating_sub(NEIGHBOURS)..(index + NEIGHBOURS + 1).min(boxes.len());
+    let mut best = (f32::INFINITY, index);
+    for other in near.filter(|&other| other != index) {
+        let area = boxes[index].union(&boxes[other]).half_area();
+        if area <= best.0 {
+            best = (area, other);
+        }
+    }
+    best.1
+}
+
+/// Numbers of boxes along a Morton curve through their middles.
+fn along_curve(boxes: &[Aabb]) -> Vec<usize> {
+    let all = boxes.iter().fold(Aabb::empty(), |all, one| all.union(one));
+    let scale = 2_097_151.0 / all.diagonal().max(Vec3A::splat(f32::MIN_POSITIVE)).as_dvec3();
+    let mut keyed: Vec<(u64, usize)> = boxes
+        .iter()
+        .enumerate()
+        .map(|(index, one)| {
+            let cell = ((one.center() - all.min).as_dvec3() * scale).to_array();
+            (cell.iter().enumerate().map(|(axis, &x)| spread(x as u64) << axis).sum(), index)
+        })
+        .collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, index)| index).collect()
+}
+
+/// Spreads 21 bits so that two zero bits follow each.
+fn spread(bits: u64) -> u64 {
+    (0..21).map(|k| (bits >> k & 1) << (3 * k)).sum()
+}
+
+/// Cuts the boxes in two across the longest extent of their middles, where that is cheapest, and the parts in turn.
+fn halved(boxes: &[Aabb], numbers: Vec<u32>) -> Bvh2 {
+    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+    let mut nodes = vec![Bvh2Node::default()];
+    let mut open = vec![(0, 0..order.len())];
+    while let Some((node, range)) = open.pop() {
+        let part = &mut order[range.clone()];
+        let around = part.iter().fold(Aabb::empty(), |all, &one| all.union(&boxes[one as usize]));
+        if let &mut [one] = part {
+            nodes[node] = Bvh2Node::new(around, 1, numbers[one as usize]);
+            continue;
+        }
+        let (children, middle) = (nodes.len(), range.start + cut(boxes, part));
+        nodes[node] = Bvh2Node::new(around, 0, children as u32);
+        nodes.extend([Bvh2Node::default(); 2]);
+        open.extend([(children, range.start..middle), (children + 1, middle..range.end)]);
+    }
+    Bvh2 { nodes, primitive_indices: numbers, children_are_ordered_after_parents: true, ..Bvh2::default() }
+}
+
+/// Sorts boxes along the longest extent of their middles; how many come before the cheapest cut.
+fn cut(boxes: &[Aabb], part: &mut [u32]) -> usize {
+    let middle = |one: u32| boxes[one as usize].center();
+    let all = part.iter().fold(Aabb::empty(), |mut all, &one| *all.extend(middle(one)));
+    let axis = all.largest_axis();
+    part.sort_unstable_by(|&a, &b| middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(&b)));
+    let costs = |around: &mut Aabb, &one: &u32| {
+        *around = around.union(&boxes[one as usize]);
+        Some(around.half_area())
+    };
+    let before: Vec<f32> = part.iter().scan(Aabb::empty(), costs).collect();
+    let after: Vec<f32> = part.iter().rev().scan(Aabb::empty(), costs).collect();
+    let n = part.len();
+    let least = (n / LEAST_PART).max(1);
+    let cost = |k: usize| before[k - 1] * k as f32 + after[n - k - 1] * (n - k) as f32;
+    (least..=n - least).min_by(|&a, &b| cost(a).total_cmp(&cost(b))).unwrap_or(n / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(count: u32, at: impl Fn(u32) -> f32, size: impl Fn(u32) -> f32) -> Vec<Triangle> {
+        let one = |k| {
+            let v0 = Vec3A::new(at(k), 0.0, 0.0);
+            Triangle { v0, v1: v0 + size(k) * Vec3A::X, v2: v0 + size(k) * Vec3A::Z }
+        };
+        (0..count).map(one).collect()
+    }
+
+    fn slow_rows(count: u32) -> Vec<Vec<Triangle>> {
+        vec![
+            row(count, |k| k as f32 / 64.0, |_| 1.0 / 128.0),
+            row(count, |k| 1.0005f32.powi(k as i32), |k| 1e-4 * 1.0005f32.powi(k as i32)),
+            // Long ones that lie over each other.
+            row(count, |k| k as f32 / 2048.0, |_| 16.0),
+        ]
+    }
+
+    fn looks_of(triangles: &[Triangle]) -> usize {
+        let boxes: Vec<Aabb> = triangles.iter().map(Triangle::aabb).collect();
+        looks(&boxes, usize::MAX) / boxes.len()
+    }
+
+    /// Rounds of pairing, level by level, as the tree of halves has them: about as many as its levels, which a row of pairs has for each box.
+    fn depth(tree: &Bvh2) -> usize {
+        let mut deepest = 0;
+        let mut open = vec![(0usize, 1)];
+        while let Some((node, depth)) = open.pop() {
+            deepest = deepest.max(depth);
+            if !tree.nodes[node].is_leaf() {
+                let first = tree.nodes[node].first_index as usize;
+                open.extend([(first, depth + 1), (first + 1, depth + 1)]);
+            }
+        }
+        deepest
+    }
+
+    #[test]
+    fn rows_are_halved() {
+        for triangles in slow_rows(4_000) {
+            let tree = binary_tree(&triangles);
+            assert!(depth(&tree) < 40, "{} levels", depth(&tree));
+            let mut seen: Vec<u32> =
+                tree.nodes.iter().filter(|node| node.is_leaf()).map(|node| node.first_index).collect();
+            seen.sort_unstable();
+            seen.dedup();
+            assert_eq!(seen, (0..4_000).collect::<Vec<_>>(), "each triangle has a leaf");
+            for node in tree.nodes.iter().filter(|node| !node.is_leaf()) {
+                let first = node.first_index as usize;
+                let children = tree.nodes[first].aabb().union(tree.nodes[first + 1].aabb());
+                assert_eq!((children.min, children.max), (node.aabb().min, node.aabb().max));
+            }
+        }
+    }
+
+    /// Twin: pairing takes as many more looks as there are more boxes, of a cloud it does not.
+    #[test]
+    fn rows_are_halved_can_fail() {
+        for (few, many) in slow_rows(2_000).iter().zip(&slow_rows(8_000)) {
+            assert!(looks_of(many) > 3 * looks_of(few), "{} and {} looks", looks_of(few), looks_of(many));
+        }
+        let uneven = |k: u32| (k.wrapping_mul(2_654_435_769) >> 8) as f32 / 65_536.0;
+        for count in [2_000, 8_000, 32_000] {
+            let found = looks_of(&row(count, uneven, |_| 0.01));
+            assert!(found < SLOW / 2, "{found} looks of {count}");
+        }
+    }
+}
