@@ -45,9 +45,18 @@ fn projected(positions: &[Vec3], face: &[u32]) -> Vec<DVec2> {
     points.iter().map(|p| DVec2::new((*p - origin).dot(s), (*p - origin).dot(t))).collect()
 }
 
+/// Whether the outline turns left at every corner and goes round once: a pentagram turns left too, and goes round twice.
 fn is_convex(points: &[DVec2]) -> bool {
     let n = points.len();
-    (0..n).all(|i| area(points[i], points[(i + 1) % n], points[(i + 2) % n]) >= 0.0)
+    (0..n).all(|i| area(points[i], points[(i + 1) % n], points[(i + 2) % n]) >= 0.0) && rounds(points) == 1
+}
+
+/// How often an outline that turns left goes round: how often its way turns from down to up.
+fn rounds(points: &[DVec2]) -> usize {
+    let n = points.len();
+    let ways = (0..n).map(|i| points[(i + 1) % n] - points[i]).filter(|way| *way != DVec2::ZERO);
+    let up: Vec<bool> = ways.map(|way| way.y > 0.0 || way.y == 0.0 && way.x > 0.0).collect();
+    (0..up.len()).filter(|&i| !up[i] && up[(i + 1) % up.len()]).count()
 }
 
 #[cfg(test)]
@@ -91,6 +100,32 @@ mod tests {
         let mut points: Vec<DVec2> = (0..n).rev().map(tooth).collect();
         points.extend([DVec2::new(0.0, -1.0), DVec2::new(n as f64, -1.0)]);
         points
+    }
+
+    /// Stars of n points that are drawn in one line: convex where each corner leads to the next one.
+    #[test]
+    fn a_pentagram_is_not_convex() {
+        for n in [3usize, 5, 7, 12, 101] {
+            for step in 1..n.div_ceil(2) {
+                let points: Vec<DVec2> = (0..n).map(|k| wheel(n, |_| 1.0)[k * step % n]).collect();
+                assert_eq!(is_convex(&points), step == 1, "every {step}th of {n} corners");
+            }
+        }
+        // Corners on a side, and corners that stand twice, leave an outline convex.
+        let square = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(DVec2::from);
+        assert!(is_convex(&square));
+        for turns in 0..6 {
+            let turned: Vec<DVec2> = square.iter().map(|p| DVec2::from_angle(f64::from(turns)).rotate(*p)).collect();
+            assert_eq!(rounds(&turned), 1);
+        }
+    }
+
+    /// Left turns alone do not tell: a pentagram has no others.
+    #[test]
+    fn a_pentagram_is_not_convex_can_fail() {
+        let star: Vec<DVec2> = (0..5).map(|k| wheel(5, |_| 1.0)[k * 2 % 5]).collect();
+        assert!((0..5).all(|i| area(star[i], star[(i + 1) % 5], star[(i + 2) % 5]) > 0.0));
+        assert_eq!(rounds(&star), 2);
     }
 
     fn outlines(n: usize) -> Vec<Vec<DVec2>> {
