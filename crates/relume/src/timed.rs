@@ -235,12 +235,15 @@ fn next(rungs: &[Rung], left: f64) -> Option<f32> {
     let exponent = match rungs {
         [.., before, last] => {
             let measured = (last.seconds / before.seconds).ln() / f64::from(before.error / last.error).ln();
-            measured.clamp(1.0, 2.0)
+            // Bakes of one error, or of no time, tell nothing.
+            if measured.is_nan() { EXPONENT } else { measured.clamp(1.0, 2.0) }
         }
         _ => EXPONENT,
     };
     // seconds = last.seconds * (last.error / error)^exponent, solved for the error.
-    let shrink = (left * SHARE / last.seconds.max(1e-6)).powf(1.0 / exponent).min(f64::from(STEP));
+    let shrink = (left * SHARE / last.seconds.max(1e-6)).powf(1.0 / exponent);
+    // Of a number and what is none the smaller one would be the number.
+    let shrink = if shrink.is_nan() { 0.0 } else { shrink.min(f64::from(STEP)) };
     let error = (f64::from(last.error) / shrink) as f32;
     let error = error.max(FINEST);
     (shrink > 0.0 && error <= WORTH * last.error).then_some(error)
@@ -342,6 +345,27 @@ mod tests {
         );
         let wanted = next.expect("the guess allows it");
         assert!(2.0 + 200_000.0 * COARSE_RAYS * others(wanted.bounces) / 4e6 > 16.0, "it takes longer");
+    }
+
+    /// Two results of one error in one time, or in none, say nothing of how time grows: what is known beforehand stands in.
+    #[test]
+    fn results_that_tell_nothing_are_passed_over() {
+        let rung = |error, seconds| Rung { error, seconds, preparation: 0.0 };
+        for seconds in [0.0, 2.0] {
+            let known = next(&[rung(0.05, seconds)], 4.0);
+            assert!(known.is_some());
+            assert_eq!(next(&[rung(0.05, seconds), rung(0.05, seconds)], 4.0), known);
+        }
+        // A time that is no number allows nothing.
+        assert_eq!(next(&[rung(0.05, 2.0)], f64::NAN), None);
+        assert_eq!(next(&[rung(0.05, 2.0), rung(0.02, f64::NAN)], f64::NAN), None);
+    }
+
+    /// The quotient of two such results is no number, and the least of that and the largest step would be that step.
+    #[test]
+    fn results_that_tell_nothing_are_passed_over_can_fail() {
+        let measured = (2.0f64 / 2.0).ln() / f64::from(0.05f32 / 0.05).ln();
+        assert_eq!(measured.clamp(1.0, 2.0).min(f64::from(STEP)), f64::from(STEP));
     }
 
     #[test]
