@@ -50,6 +50,7 @@ mod sample;
 mod senders;
 mod series;
 pub mod settings;
+mod sharing;
 mod small;
 mod split;
 mod start;

@@ -9,8 +9,9 @@ use crate::plan::{allowed, world};
 use crate::progress::Stage;
 use crate::proximity::Proximity;
 use crate::receivers::Receivers;
+use crate::sharing::{halve_shared, has_slivers};
 use crate::small::cubes;
-use crate::split::{Edge, MOST_TRIANGLES, edge_place, edges, halve, length};
+use crate::split::{Edge, MOST_TRIANGLES, edge_place, edges, length};
 use crate::towards::{most_triangles, towards, triangles};
 use crate::world::World;
 use crate::{Error, ProgressFn, settings};
@@ -121,11 +122,13 @@ fn evenly(mut scene: Cow<'_, Scene>, longest: f32) -> Result<Cow<'_, Scene>, Err
     }
     let name = scene.name.clone();
     for mesh in &mut scene.to_mut().meshes {
-        for _ in 0..ROUNDS {
+        // Edges that are turned get shorter, but not by half.
+        let rounds = if has_slivers(mesh, is_longer) { 2 * ROUNDS } else { ROUNDS };
+        for _ in 0..rounds {
             if !has_longer(mesh) {
                 break;
             }
-            halve(mesh, is_longer);
+            halve_shared(mesh, is_longer);
             check_count(&name, mesh)?;
         }
         if has_longer(mesh) {
@@ -159,7 +162,7 @@ fn at_bends<'a>(
         }
         let name = scene.name.clone();
         for (index, mesh) in scene.to_mut().meshes.iter_mut().enumerate() {
-            let middles = halve(mesh, |mesh, edge| bent.contains(&edge_place(mesh, edge)));
+            let middles = halve_shared(mesh, |mesh, edge| bent.contains(&edge_place(mesh, edge)));
             bends.halved(index, middles);
             check_count(&name, mesh)?;
         }

@@ -89,7 +89,7 @@ fn corner_cut(mesh: &Mesh, [a, b, c]: [u32; 3], ab: u32, ca: u32) -> Vec<[u32; 3
 }
 
 /// Adds the vertex at a share of the way along an edge.
-fn add_between(mesh: &mut Mesh, [a, b]: Edge, share: f32) -> u32 {
+pub(crate) fn add_between(mesh: &mut Mesh, [a, b]: Edge, share: f32) -> u32 {
     let (a, b) = (a as usize, b as usize);
     let index = mesh.positions.len() as u32;
     let (of_a, of_b) = (1.0 - share, share);

@@ -3,8 +3,9 @@
 use crate::Error;
 use crate::proximity::Proximity;
 use crate::refine::{LEAST_TRIANGLES, check_count};
+use crate::sharing::halve_shared;
 use crate::small::first_vertices;
-use crate::split::{Edge, EdgePlace, Place, edge_place, edges, halve, length, place_of, sorted};
+use crate::split::{Edge, EdgePlace, Place, edge_place, edges, length, place_of, sorted};
 use rayon::prelude::*;
 use scene::{Mesh, Scene};
 use std::borrow::Cow;
@@ -85,7 +86,7 @@ fn split(
         let refined = refined.get_or_insert_with(|| scene.clone());
         known = refined.meshes.iter().map(|mesh| mesh.positions.len() as u32).collect();
         for (mesh, firsts) in refined.meshes.iter_mut().zip(&mut firsts) {
-            let middles = halve(mesh, |mesh, edge| marked.contains(&edge_place(mesh, edge)));
+            let middles = halve_shared(mesh, |mesh, edge| marked.contains(&edge_place(mesh, edge)));
             firsts.resize(mesh.positions.len(), 0);
             middles.into_iter().for_each(|([a, _], middle)| firsts[middle as usize] = firsts[a as usize]);
             check_count(&scene.name, mesh)?;
