@@ -204,10 +204,10 @@ impl<'a> Arrivals<'a> {
         };
         let open = self.apart.then(|| arrival.values.clone());
         if direct.openness < 1.0 {
-            let blockers = self.gatherer.blockers(receiver, index, step, direct.openness, worker);
+            let blockers = self.gatherer.blockers(index, step, direct.openness, worker);
             arrival.inside_share = blockers.inside_share;
             arrival.behind_share = blockers.behind_share;
-            arrival.cover = blockers.cover;
+            arrival.cover = blockers.cover(receiver.geometric_normal);
             arrival.bounce_rays = blockers.rays;
             if self.gatherer.hits && !blockers.found.is_empty() {
                 let open = self.gatherer.bank.domain.open_about(self.functions, receiver.normal);

@@ -87,7 +87,7 @@ impl Gatherer<'_> {
     pub(crate) fn gather(&self, receiver: &Receiver, index: u32, worker: &mut Worker) -> Gathered {
         let (mut out, step) = self.direct(receiver, index, worker);
         if out.openness < 1.0 {
-            let blockers = self.blockers(receiver, index, step, out.openness, worker);
+            let blockers = self.blockers(index, step, out.openness, worker);
             self.pack(blockers, index, &mut out);
         }
         out
@@ -150,6 +150,7 @@ impl Gatherer<'_> {
         worker: &mut Worker,
     ) -> Seen {
         let rule = self.rule(index, set);
+        worker.origin = origin;
         worker.directions.iter_mut().for_each(Vec::clear);
         worker.blocked.clear();
         worker.open.clear();
@@ -280,16 +281,9 @@ impl Gatherer<'_> {
         chosen as u64
     }
 
-    /// What blocks the directions that were found blocked up to a step of the set, after [`Gatherer::direct`].
-    pub(crate) fn blockers(
-        &self,
-        receiver: &Receiver,
-        index: u32,
-        step: usize,
-        openness: f32,
-        worker: &mut Worker,
-    ) -> Blockers {
-        let origin = self.world.start(receiver.position, receiver.geometric_normal, receiver.rounding);
+    /// What blocks the directions that were found blocked up to a step of the set, after [`Gatherer::direct`] of the same receiver.
+    pub(crate) fn blockers(&self, index: u32, step: usize, openness: f32, worker: &mut Worker) -> Blockers {
+        let origin = worker.origin;
         let (set, _) = self.bank.pick(index);
         let rays = self.trace_blockers(origin, set.steps[step].end, index, worker);
         if let Some(layer) = &self.world.translucent {
@@ -313,11 +307,9 @@ impl Gatherer<'_> {
         let behind = sum(&|hit| !hit.front && !self.world.is_two_sided(hit.triangle));
         let [xs, ys, zs] = &worker.directions;
         let direction = |j: usize| Vec3::new(xs[j], ys[j], zs[j]);
-        let ends = found.iter().map(|(j, hit, weight)| (direction(*j), hit.t, *weight));
-        let cover = blockers::cover(ends, receiver.geometric_normal, total / (1.0 - f64::from(openness)));
         let found = found.into_iter().map(|(j, hit, weight)| (direction(j), hit, (weight * scale) as f32));
         let [inside_share, behind_share] = [inside, behind].map(|sum| (sum / total) as f32);
-        Blockers { rays, inside_share, behind_share, cover, found: found.collect(), filters: Vec::new() }
+        Blockers { rays, inside_share, behind_share, found: found.collect(), filters: Vec::new() }
     }
 
     fn pack(&self, blockers: Blockers, index: u32, out: &mut Gathered) {

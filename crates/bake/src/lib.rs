@@ -44,6 +44,7 @@ mod progress;
 mod proximity;
 mod receivers;
 mod refine;
+mod reflected;
 mod repair;
 mod rows;
 mod sample;

@@ -1,13 +1,13 @@
 //! Runs receivers over the threads: the first pass, and one pass per bounce.
 
-use crate::field::{BLOCK, Field};
+use crate::field::Field;
 use crate::gather::{Gathered, Gatherer, Worker};
 use crate::progress::{Progress, Stage};
 use crate::receivers::{Receivers, morton_order};
-use crate::senders::{Sender, Senders, fill_row};
+use crate::reflected::add_reflected;
+use crate::senders::{Senders, fill_row};
 use crate::world::World;
 use crate::{Error, ProgressFn};
-use glam::Vec4;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -206,19 +206,4 @@ pub(crate) fn bounce_pass(
         }
     }
     Ok(next)
-}
-
-/// Adds what every sender of a receiver sends on: albedo times its transfer, times its share.
-fn add_reflected(receivers: &Receivers, id: u32, senders: &[Sender], last: &Field, row: &mut [f32]) {
-    let stride = last.row_len() / last.channels;
-    for sender in senders {
-        let from = last.row(sender.resolve(receivers, id));
-        let channels = row.chunks_exact_mut(stride).zip(from.chunks_exact(stride));
-        for ((out, from), weight) in channels.zip(sender.weight) {
-            // Whole blocks: a compiler takes wider ones, and what remains of them one by one.
-            for (out, from) in out.chunks_exact_mut(BLOCK).zip(from.chunks_exact(BLOCK)) {
-                (Vec4::from_slice(out) + weight * Vec4::from_slice(from)).write_to_slice(out);
-            }
-        }
-    }
 }

@@ -8,6 +8,8 @@ use raytrace::{FanState, Hit};
 /// Buffers that a thread keeps between receivers. Contents never change results.
 pub(crate) struct Worker {
     pub(super) fan: FanState,
+    /// Where the rays of the receiver start.
+    pub(super) origin: Vec3,
     /// World directions of the set, and those of them that a step traces.
     pub(super) directions: [Vec<f32>; 3],
     pub(super) traced: [Vec<f32>; 3],
@@ -30,6 +32,7 @@ impl Worker {
     pub(crate) fn new() -> Self {
         Self {
             fan: FanState::default(),
+            origin: Vec3::ZERO,
             directions: Default::default(),
             traced: Default::default(),
             met: Vec::new(),
