@@ -4,6 +4,7 @@
 //! directions, by triple products of the coefficients of visibility, plus what every surface that blocks sends on (\[N\] eqs. 2.1, 2.2).
 
 use crate::directions::DirectionBank;
+use crate::domain::Domain;
 use crate::field::Field;
 use crate::found::{Found, add_sent};
 use crate::gather::{Gatherer, Worker};
@@ -207,7 +208,7 @@ impl<'a> Arrivals<'a> {
             let blockers = self.gatherer.blockers(index, step, direct.openness, worker);
             arrival.inside_share = blockers.inside_share;
             arrival.behind_share = blockers.behind_share;
-            arrival.cover = blockers.cover(receiver.geometric_normal);
+            arrival.cover = blockers.cover(receiver.geometric_normal, &self.gatherer.bank.domain);
             arrival.bounce_rays = blockers.rays;
             if self.gatherer.hits && !blockers.found.is_empty() {
                 let open = self.gatherer.bank.domain.open_about(self.functions, receiver.normal);
@@ -217,18 +218,27 @@ impl<'a> Arrivals<'a> {
                 let mut send = |hit: &Hit, direction, out: &mut [f32]| self.sent(hit, direction, out);
                 add_sent(found, &closed, (self.functions, numbers), &mut send, &mut arrival.values);
                 if self.apart {
-                    let angle = self.gatherer.bank.domain.solid_angle() as f32;
+                    let angle = self.measure();
                     arrival.found = Found { hits: blockers.found, filters: blockers.filters, closed, angle };
                 }
             }
         }
-        let angle = self.gatherer.bank.domain.solid_angle() as f32;
+        let angle = self.measure();
         if let Some(open) = open {
             arrival.visibility = direct.transfer.iter().map(|v| v * angle).collect();
             arrival.bounced = arrival.values.iter().zip(open).map(|(all, open)| angle * (all - open)).collect();
         }
         arrival.values.iter_mut().for_each(|value| *value *= angle);
         arrival
+    }
+
+    /// What a mean over the domain is multiplied by. Of one normal alone, whose cosine is in the domain, what arrives is irradiance over pi: it
+    /// is told as if it were the same for all normals, in the first function.
+    fn measure(&self) -> f32 {
+        match &self.gatherer.bank.domain {
+            Domain::Cosine => 4.0 * std::f32::consts::PI,
+            other => other.solid_angle() as f32,
+        }
     }
 
     /// Adds what open directions bring. `tinted` is the visibility of each channel where what is passed on the way is tinted, else empty.

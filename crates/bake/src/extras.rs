@@ -118,13 +118,22 @@ impl Done<'_> {
 
     /// What arrives at points, along the directions of a bank of [`Done::bank`].
     pub(crate) fn arrivals<'b>(&'b self, bank: &'b DirectionBank, functions: Bands) -> Arrivals<'b> {
-        let light = self.light.map(|light| &light.coefficients[..self.light_bands().coefficients()]);
-        self.arrivals_under(bank, functions, light)
+        self.arrivals_under(bank, functions, self.fixed_light())
     }
 
     /// The same for every coefficient of the light, whether one is fixed or not.
     pub(crate) fn relightable<'b>(&'b self, bank: &'b DirectionBank, functions: Bands) -> Arrivals<'b> {
         self.arrivals_under(bank, functions, None)
+    }
+
+    /// What arrives at points for the one normal that each has: as vertices take it, with the cosine exact.
+    pub(crate) fn arrivals_at_normals<'b>(&'b self, light: Option<&'b [[f32; 3]]>) -> Arrivals<'b> {
+        self.arrivals_under(self.gatherer.bank, Bands::new(1).expect("one band"), light)
+    }
+
+    /// The coefficients of the light that is baked in.
+    pub(crate) fn fixed_light(&self) -> Option<&[[f32; 3]]> {
+        self.light.map(|light| &light.coefficients[..self.light_bands().coefficients()])
     }
 
     fn arrivals_under<'b>(

@@ -3,6 +3,7 @@
 //! A texel is a receiver like a vertex: the same rays, the same rule for their number. What it sees is kept over world normals until
 //! seams are stitched, then turned into the tangent frame and converted to the basis.
 
+mod borders;
 mod check;
 mod directional;
 mod frame;
@@ -34,6 +35,7 @@ use std::collections::BTreeMap;
 /// Texels that a thread takes at a time.
 const CHUNK: usize = 64;
 
+pub(crate) use borders::read_back;
 pub(crate) use check::{check, check_sheets};
 pub use directional::{Directional, DirectionalTexel, directional};
 pub(crate) use join::stitch_all;
@@ -111,6 +113,7 @@ impl Gathered {
                 continue;
             }
             let slot = self.plate.add_slot(place, self.plate.owner[place]);
+            self.plate.unseen.push(slot);
             self.plate.model_of[slot as usize] = self.frames.len() as u32;
             let mesh = &done.scene.meshes[texel.mesh as usize];
             let normal = receiver(done, &texel).normal;
@@ -131,9 +134,17 @@ fn functions(has_light: bool) -> Bands {
 }
 
 pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Result<Maps, Error> {
-    let functions = functions(done.light.is_some());
-    let bank = done.bank(Domain::Hemisphere, functions);
-    let arrivals = done.arrivals(&bank, functions);
+    // Left out by --effects, normal maps are not drawn.
+    let bends = allowed(done.settings, Effect::NormalMaps);
+    let is_bent = |sheet: &SheetSettings| bends && sheet.directional;
+    let any_bent = settings.sheets.iter().any(is_bent);
+    // Where one normal is enough its cosine is exact; in few bands it would err most where little is open, as dark lines in corners.
+    let functions = if any_bent { functions(done.light.is_some()) } else { Bands::new(1).expect("one band") };
+    let bank = any_bent.then(|| done.bank(Domain::Hemisphere, functions));
+    let arrivals = match &bank {
+        Some(bank) => done.arrivals(bank, functions),
+        None => done.arrivals_at_normals(done.fixed_light()),
+    };
     let shape = arrivals.shape();
     let mut first_index = 0;
     let mut sheets = Vec::new();
@@ -147,6 +158,9 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         hidden::mend(&mut gathered.plate, std::mem::take(&mut gathered.hidden));
         gathered.record.unfilled = gathered.fill_from_vertices(done, shape) as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
+        if settings.stitch {
+            read_back(&mut gathered.plate);
+        }
     }
     let mut sheet_of_mesh = vec![None; prt.meshes.len()];
     for (index, sheet) in (0..).zip(&settings.sheets) {
@@ -157,13 +171,11 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         stitch_all(done, &sheet_of_mesh, &mut plates);
     }
     let mut record = summed(&sheets);
-    // Left out by --effects, normal maps are not drawn.
-    let bends = allowed(done.settings, Effect::NormalMaps);
     let light = done.map_light();
     done.monitor.check()?;
     let finish = |(mut gathered, sheet): (Gathered, &SheetSettings)| {
         (1..settings.dilation).for_each(|_| gathered.plate.dilate());
-        let held = if bends && sheet.directional { settings.basis } else { Basis::ModifiedH1 };
+        let held = if is_bent(sheet) { settings.basis } else { Basis::ModifiedH1 };
         let values = layers(&gathered.plate, &gathered.frames, &Converter::new(held, functions), shape);
         let encoded = encoded(&gathered.plate, &values, shape, held, &light, settings.encoding);
         record.clipped += encoded.clipped;
@@ -216,7 +228,8 @@ fn gather(
             inside.push(*texel);
             continue;
         }
-        plate.add_slot(place, chart);
+        let slot = plate.add_slot(place, chart);
+        plate.aside.extend(aside(done, texel, sheet).map(|at| (slot, at)));
         errors.push(arrival.error);
         plate.values.extend_from_slice(&arrival.values);
         let mesh = &done.scene.meshes[texel.mesh as usize];
@@ -255,6 +268,15 @@ pub(crate) fn receiver(done: &Done<'_>, texel: &Texel) -> Receiver {
     let at = a + u * (b - a) + v * (c - a);
     let receiver = Receiver::new(at, Some(mesh.normal(triangle, u, v)), (b - a).cross(c - a), centre).0;
     receiver.of_extent(done.gatherer.world.extents[texel.mesh as usize])
+}
+
+/// The point of a sheet that a texel stands for, in texels, where that is not its middle.
+pub(crate) fn aside(done: &Done<'_>, texel: &Texel, sheet: &SheetSettings) -> Option<Vec2> {
+    let mesh = &done.scene.meshes[texel.mesh as usize];
+    let corners = mesh.triangles[texel.triangle as usize].map(|vertex| mesh.uv1[vertex as usize]);
+    let [a, b, c] = corners.map(|uv| uv * Vec2::new(sheet.width as f32, sheet.height as f32));
+    let [u, v] = texel.barycentrics;
+    (!texel.is_middle).then(|| a + u * (b - a) + v * (c - a))
 }
 
 /// How large a texel is on its surface: the side of a square.

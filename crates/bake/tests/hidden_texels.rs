@@ -162,3 +162,79 @@ fn the_dark_of_a_gap_lower_than_a_texel_stays_there_can_fail() {
         assert!(0.3 * 0.5 + 0.7 * row[52] < 0.4);
     }
 }
+
+/// A wall of 2 m that leans over ground by 30 degrees, with texels of 10 cm, and a kerb of 10 cm before it, 20 cm from its foot.
+fn wall_behind_kerb() -> (Scene, SheetSettings) {
+    let (_, sheet) = ground();
+    let uv1 = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from_array).to_vec();
+    let slope = 2.0 * Vec3::new(0.5, 0.75f32.sqrt(), 0.0);
+    let wall = Mesh { uv1, ..quad(Vec3::Z, Vec3::NEG_Z * 2.0, slope) };
+    let along = Vec3::Z * 80.0;
+    let low = Vec3::new(0.2, 0.0, -40.0);
+    let kerb = quad(low, along, Vec3::Y * 0.1);
+    let top = quad(low + Vec3::Y * 0.1, along, Vec3::X * 40.0);
+    let ground = quad(Vec3::new(-40.0, 0.0, -40.0), along, Vec3::X * 40.2);
+    let mut meshes = vec![wall, kerb, top, ground];
+    meshes.iter_mut().for_each(|mesh| mesh.material = 0);
+    let material = Material { double_sided: true, ..Material::default() };
+    (Scene { meshes, materials: vec![material], ..Scene::default() }, sheet)
+}
+
+/// The foot of a wall that leans over ground is seen, so its texels keep their own light: of the sky `(1 - sin(30 degrees + e)) / 2`, e the elevation
+/// of what stands before them. What most texels above have would pass for it otherwise.
+#[test]
+fn the_foot_of_a_leaning_wall_keeps_its_light() {
+    let (scene, sheet) = wall_behind_kerb();
+    let prt = baked(&scene, sheet);
+    let maps = prt.maps.as_ref().expect("maps were asked for");
+    let mut white = vec![[0.0; 3]; 4];
+    white[0] = [(4.0 * std::f32::consts::PI).sqrt(); 3];
+    let values = maps.sheets[0].lit(maps, &white).functions.remove(0);
+    let lean = std::f64::consts::FRAC_PI_6;
+    let exact = |row: usize| {
+        let up = (row as f64 + 0.5) * 0.1;
+        let (x, y) = (up * libm::sin(lean), up * libm::cos(lean));
+        let elevation = libm::atan2(0.1 - y, 0.2 - x).max(0.0);
+        0.5 * (1.0 - libm::sin(lean + elevation))
+    };
+    for row in 0..2 {
+        let found = f64::from(maps.basis.reconstruct(&[values[row * 20 + 10]], Vec3::Z)[0]);
+        assert!((found - exact(row)).abs() < 0.02, "row {row}: {found} instead of {}", exact(row));
+    }
+    assert!(exact(1) - exact(0) > 0.1, "can fail: the light of the row above would be seen to be wrong");
+}
+
+/// Of the sky, weighed by a function of the cosine, what a point of the ground at z = 0.05 sees beside the plate of [`gap_over_ground`]: a sum over
+/// the hemisphere.
+fn beside_a_plate(x: f64, height: f64, weight: &dyn Fn(f64) -> f64) -> f64 {
+    const N: usize = 600;
+    let mut sum = 0.0;
+    for k in 0..N * N {
+        let cosine = ((k / N) as f64 + 0.5) / N as f64;
+        let angle = std::f64::consts::TAU * ((k % N) as f64 + 0.5) / N as f64;
+        let reach = height * (1.0 - cosine * cosine).sqrt() / cosine;
+        let (at, along) = (x + reach * libm::cos(angle), 0.05 + reach * libm::sin(angle));
+        let blocked = (0.03..0.9).contains(&at) && (-0.9..0.9).contains(&along);
+        sum += if blocked { 0.0 } else { weight(cosine) };
+    }
+    2.0 * sum / (N * N) as f64
+}
+
+/// Under a plate little but slanting light comes in. Texels without normal maps take the cosine as it is.
+#[test]
+fn slanting_light_is_weighed_by_the_cosine() {
+    for row in beside_the_block(0.15, 20) {
+        for (column, light) in row.iter().enumerate().take(16).skip(11) {
+            let exact = beside_a_plate(column as f64 * 0.1 - 0.95, 0.15, &|cosine| cosine);
+            assert!((f64::from(*light) - exact).abs() < 0.01, "{column}: {light} instead of {exact}");
+        }
+    }
+}
+
+/// What three bands hold of the cosine does not pass for it there.
+#[test]
+fn slanting_light_is_weighed_by_the_cosine_can_fail() {
+    let bands = |cosine: f64| 0.25 + 0.5 * cosine + 5.0 / 32.0 * (3.0 * cosine * cosine - 1.0);
+    let off = |x: f64| beside_a_plate(x, 0.15, &bands) - beside_a_plate(x, 0.15, &|cosine| cosine);
+    assert!(off(0.35).abs() > 0.012, "{}", off(0.35));
+}

@@ -1,12 +1,14 @@
 //! What blocks the directions of one receiver.
 
+use crate::domain::Domain;
 use glam::Vec3;
 use raytrace::Hit;
 
 /// Cosine of the angle from the normal within which what lies above a point covers it. Walls beside it reach in there far up alone.
 const ABOVE: f32 = std::f32::consts::FRAC_1_SQRT_2;
-/// Share of the directions within that angle that a cover blocks.
-const COVERED: f64 = 0.5;
+/// Share of the directions within that angle that a cover blocks. A wall that leans over ground is seen, however near its foot: little more than
+/// half of them meet ground as near as that.
+const COVERED: f64 = 0.85;
 
 /// The surfaces that block directions.
 #[derive(Debug, Default)]
@@ -25,16 +27,20 @@ pub(crate) struct Blockers {
 
 impl Blockers {
     /// How high above the point about a normal what covers it lies; infinite where nothing does, or some surfaces are translucent. The
-    /// directions are those of a hemisphere, and weigh the same.
-    pub(crate) fn cover(&self, normal: Vec3) -> f32 {
+    /// directions are those of the domain.
+    pub(crate) fn cover(&self, normal: Vec3, domain: &Domain) -> f32 {
         if !self.filters.is_empty() {
             return f32::INFINITY;
         }
+        let share = match domain {
+            Domain::Cosine => 1.0 - ABOVE * ABOVE,
+            Domain::Hemisphere(_) | Domain::Sphere(_) => 1.0 - ABOVE,
+        };
         let cosine = |(direction, hit, weight): &(Vec3, Hit, f32)| (direction.dot(normal), hit.t, f64::from(*weight));
         let above = self.found.iter().map(cosine).filter(|(cosine, ..)| *cosine > ABOVE);
         let mut heights: Vec<(f32, f64)> = above.map(|(cosine, t, weight)| (t * cosine, weight)).collect();
         heights.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let enough = COVERED * f64::from(1.0 - ABOVE);
+        let enough = COVERED * f64::from(share);
         let mut sum = 0.0;
         let highest = heights.into_iter().find(|(_, weight)| {
             sum += weight;

@@ -1,20 +1,21 @@
 //! Texels as receivers: transfer textures (\[T\] sections 4.1 and 4.3), a sheet for each object or for several.
 
 use super::levels;
-use super::row::{Layout, RowMaker};
+use super::row::{Bouncing, Layout, RowMaker};
 use super::settings::TextureSettings;
 use crate::arrival::{Arrival, Arrivals};
 use crate::error::Error;
 use crate::extras::Done;
 use crate::maps::hidden::{self, Hidden, is_hidden};
 use crate::maps::plate::{NONE, Plate};
-use crate::maps::{SheetSettings, arrive_as, extent, receiver, stitch_all};
+use crate::maps::{SheetSettings, arrive_as, aside, extent, read_back, receiver, stitch_all};
 use crate::progress::Stage;
 use crate::receivers::Receiver;
 use crate::repair::is_inside;
 use coeff_io::GlossRecord;
 use glam::Vec3;
 use scene::lightmap::{Charts, Texel, texels};
+use sh_math::Bands;
 use std::collections::BTreeMap;
 
 /// A sheet with what its rows hold.
@@ -70,15 +71,22 @@ pub(crate) fn bake(
     record: &mut GlossRecord,
     lost: &mut [f64; 2],
 ) -> Result<Vec<BakedSheet>, Error> {
+    let at_normals = done.arrivals_at_normals(None);
+    let plain = RowMaker { functions: Bands::new(1).expect("one band"), bouncing: Bouncing::None, ..*maker };
     let mut plates = Vec::new();
     let mut errors = Vec::new();
     let mut first_index = 0u32;
     for plan in plans {
         let told = Told { record, errors: &mut errors, lost };
+        let (arrivals, maker) =
+            if is_at_normals(done, settings, plan) { (&at_normals, &plain) } else { (arrivals, maker) };
         let mut plate = gather(done, arrivals, maker, settings, plan, first_index, told)?;
         first_index = first_index.wrapping_add(plan.settings.width * plan.settings.height);
         record.unfilled += fill_from_vertices(done, maker, plan, &mut plate) as u64;
         (0..settings.dilation.min(1)).for_each(|_| plate.dilate());
+        if settings.stitch {
+            read_back(&mut plate);
+        }
         plates.push(plate);
     }
     if settings.stitch && settings.dilation > 0 {
@@ -93,6 +101,14 @@ pub(crate) fn bake(
         BakedSheet { layout: plan.layout, levels: std::iter::once(plate).chain(below).collect() }
     };
     Ok(plates.into_iter().zip(plans).map(finish).collect())
+}
+
+/// Whether the texels of a sheet need what arrives for one normal alone, that of the surface: they take it as vertices do, with the cosine exact.
+/// In few bands it would err most where little is open.
+fn is_at_normals(done: &Done<'_>, settings: &TextureSettings, plan: &SheetPlan) -> bool {
+    let materials = plan.settings.meshes.iter().map(|&mesh| done.scene.meshes[mesh].material);
+    let is_bent = |material: u32| settings.bent && done.scene.materials[material as usize].normal_texture.is_some();
+    plan.layout.len() == plan.layout.diffuse && !materials.into_iter().any(is_bent)
 }
 
 /// What arrives at the texels of one sheet, those mended that are inside of bodies or hidden.
@@ -134,12 +150,14 @@ fn gather(
             hidden.extend((!kept.is_inside).then_some(Hidden { place, row: kept.row }));
             continue;
         }
-        plate.add_slot(place, chart(texel));
+        let slot = plate.add_slot(place, chart(texel));
+        plate.aside.extend(aside(done, texel, sheet).map(|at| (slot, at)));
         plate.values.extend(kept.row);
         errors.push(kept.error);
     }
     for one in hidden::mend(&mut plate, hidden) {
-        plate.add_slot(one.place, plate.owner[one.place]);
+        let slot = plate.add_slot(one.place, plate.owner[one.place]);
+        plate.unseen.push(slot);
         plate.values.extend(one.row);
     }
     Ok(plate)

@@ -27,7 +27,9 @@ pub(crate) fn is_hidden(arrival: &Arrival, extent: f32) -> bool {
 /// these; they stay empty.
 pub(crate) fn mend(plate: &mut Plate, hidden: Vec<Hidden>) -> Vec<Hidden> {
     let far: Vec<bool> = hidden.iter().map(|one| !is_read(plate, one.place)).collect();
+    let seen = plate.slots() as u32;
     plate.mend();
+    plate.unseen.extend(seen..plate.slots() as u32);
     let mut empty = Vec::new();
     for one in hidden.into_iter().zip(far).filter(|(_, far)| *far).map(|(one, _)| one) {
         match plate.slot_of[one.place] {

@@ -21,7 +21,10 @@ pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], plates:
     }
     let look_up = |mesh: u32, uv: Vec2| -> Agreement {
         let sheet = sheet_of(mesh);
-        bilinear(plates[sheet], uv).into_iter().map(|(slot, weight)| (slot + first_slot[sheet], weight)).collect()
+        bilinear(plates[sheet], in_texels(plates[sheet], uv))
+            .into_iter()
+            .map(|(slot, weight)| (slot + first_slot[sheet], weight))
+            .collect()
     };
     let mut agreements = Vec::new();
     for seam in seams(done.scene, &meshes) {
@@ -45,7 +48,9 @@ pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], plates:
     }
     let Some(row_len) = plates.first().map(|plate| plate.row_len) else { return };
     let mut values: Vec<f32> = plates.iter_mut().flat_map(|plate| std::mem::take(&mut plate.values)).collect();
-    stitch(&agreements, row_len, &mut values);
+    let unseen =
+        plates.iter().zip(&first_slot).flat_map(|(plate, first)| plate.unseen.iter().map(move |slot| slot + first));
+    stitch(&agreements, &unseen.collect(), row_len, &mut values);
     let mut rest = &values[..];
     for plate in plates {
         let (own, others) = rest.split_at(plate.slots() * row_len);
@@ -54,10 +59,14 @@ pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], plates:
     }
 }
 
-/// Slots that the filter reads at a point of a sheet, with weights that sum to 1; none where one is empty.
-fn bilinear(plate: &Plate, uv: Vec2) -> Agreement {
-    let size = Vec2::new(plate.width as f32, plate.height as f32);
-    let at = (uv * size - 0.5).clamp(Vec2::ZERO, size - 1.0);
+fn in_texels(plate: &Plate, uv: Vec2) -> Vec2 {
+    uv * Vec2::new(plate.width as f32, plate.height as f32)
+}
+
+/// Slots that the filter reads at a point of a sheet, in texels, with weights that sum to 1; none where one is empty.
+pub(super) fn bilinear(plate: &Plate, at: Vec2) -> Agreement {
+    let most = Vec2::new(plate.width as f32, plate.height as f32) - 1.0;
+    let at = (at - 0.5).clamp(Vec2::ZERO, most);
     let (low, part) = (at.floor(), at - at.floor());
     let mut out = Agreement::new();
     for (dx, wx) in [(0, 1.0 - part.x), (1, part.x)] {

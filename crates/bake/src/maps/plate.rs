@@ -1,5 +1,7 @@
 //! The texels of one sheet while they are worked on.
 
+use glam::Vec2;
+
 /// No slot, no chart.
 pub(crate) const NONE: u32 = u32::MAX;
 
@@ -22,6 +24,10 @@ pub(crate) struct Plate {
     pub(crate) model_of: Vec<u32>,
     /// `[slot][number]`.
     pub(crate) values: Vec<f32>,
+    /// Slots of texels that no view shows.
+    pub(crate) unseen: Vec<u32>,
+    /// Slots whose numbers are those of a point beside the middle of their texel, with that point in texels.
+    pub(crate) aside: Vec<(u32, Vec2)>,
 }
 
 impl Plate {
@@ -36,6 +42,8 @@ impl Plate {
             chart_of: Vec::new(),
             model_of: Vec::new(),
             values: Vec::new(),
+            unseen: Vec::new(),
+            aside: Vec::new(),
         }
     }
 
