@@ -77,10 +77,11 @@ pub fn environment_brdf(roughness: f32, cosine: f32) -> [f32; 2] {
     let fit = |fit: &Fit| {
         let mut sum = 0.0;
         for (j, grazing) in grazing.iter().enumerate() {
-            for (i, shadow) in shadow.iter().enumerate() {
-                let factor: f32 = (0..3).map(|k| powers[k] * fit[k][j][i]).sum();
-                sum += grazing * shadow * factor;
-            }
+            // Four at a time, which compilers make one of; their sum keeps its order.
+            let factors: [f32; 4] =
+                std::array::from_fn(|i| powers[0] * fit[0][j][i] + powers[1] * fit[1][j][i] + powers[2] * fit[2][j][i]);
+            let terms: [f32; 4] = std::array::from_fn(|i| grazing * shadow[i] * factors[i]);
+            terms.iter().for_each(|term| sum += term);
         }
         sum
     };

@@ -8,6 +8,8 @@ use rayon::prelude::*;
 const TURNS: usize = 4;
 /// Means near to a row whose clusters are tried.
 const TRIED: usize = 8;
+/// Clusters whose distances are summed side by side.
+const SIDE_BY_SIDE: usize = 8;
 
 /// Means and principal vectors of clusters, in full.
 #[derive(Debug, Clone)]
@@ -60,13 +62,12 @@ impl Clusters {
 
     /// Of each row the cluster whose mean and first `rank` vectors come nearest.
     pub(crate) fn assign(&self, rows: &[f32], rank: usize) -> Vec<u32> {
-        rows.par_chunks(self.columns).map(|row| self.nearest(row, rank)).collect()
+        let means = Means::of(self);
+        rows.par_chunks(self.columns).map(|row| self.nearest(row, rank, &means)).collect()
     }
 
-    fn nearest(&self, row: &[f32], rank: usize) -> u32 {
-        let distance = |mean: &[f32]| row.iter().zip(mean).map(|(x, m)| (x - m) * (x - m)).sum::<f32>();
-        let mut near: Vec<(f32, u32)> =
-            (0..).zip(&self.each).map(|(c, cluster): (u32, _)| (distance(&cluster.mean), c)).collect();
+    fn nearest(&self, row: &[f32], rank: usize, means: &Means) -> u32 {
+        let mut near = means.distances(row);
         if near.len() > TRIED {
             near.select_nth_unstable_by(TRIED, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             near.truncate(TRIED);
@@ -81,6 +82,38 @@ impl Clusters {
     /// The sum of squares that is left out with so many vectors of each.
     pub(crate) fn left_out(&self, rank: usize) -> f64 {
         self.each.iter().map(|cluster| cluster.variances.iter().skip(rank).sum::<f64>()).sum()
+    }
+}
+
+/// The means of clusters, so many side by side: `[group][column][cluster]`, the last group padded by its last mean.
+struct Means {
+    columns: usize,
+    values: Vec<[f32; SIDE_BY_SIDE]>,
+    count: usize,
+}
+
+impl Means {
+    fn of(clusters: &Clusters) -> Self {
+        let groups = clusters.each.chunks(SIDE_BY_SIDE);
+        let column = |group: &[Cluster], i: usize| std::array::from_fn(|k| group[k.min(group.len() - 1)].mean[i]);
+        let values = groups.flat_map(|group| (0..clusters.columns).map(move |i| column(group, i))).collect();
+        Self { columns: clusters.columns, values, count: clusters.each.len() }
+    }
+
+    /// Squared distances of a row from all means, each summed in the order of the columns, with their numbers.
+    fn distances(&self, row: &[f32]) -> Vec<(f32, u32)> {
+        let mut found = Vec::with_capacity(self.count.next_multiple_of(SIDE_BY_SIDE));
+        for (group, first) in self.values.chunks_exact(self.columns).zip((0..).step_by(SIDE_BY_SIDE)) {
+            let mut sums = [0.0f32; SIDE_BY_SIDE];
+            for (x, means) in row.iter().zip(group) {
+                for (sum, mean) in sums.iter_mut().zip(means) {
+                    *sum += (x - mean) * (x - mean);
+                }
+            }
+            found.extend(sums.into_iter().zip(first..));
+        }
+        found.truncate(self.count);
+        found
     }
 }
 
@@ -148,4 +181,34 @@ fn of_few(away: &[Vec<f32>]) -> (Vec<f64>, Vec<Vec<f64>>) {
     };
     let vectors = values.iter().zip(combinations).map(vector).collect();
     (values, vectors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same bits as one mean after the other, for numbers of clusters about a group; the last number is not that of a padded one.
+    #[test]
+    fn distances_are_those_taken_one_by_one() {
+        let columns = 13;
+        let value = |k: usize| ((k * 37 + 11) % 101) as f32 / 50.0 - 0.99;
+        let row: Vec<f32> = (0..columns).map(|i| value(i * i)).collect();
+        for count in [1, 7, 8, 9, 16, 19] {
+            let mean = |c: usize| (0..columns).map(|i| value(c * columns + i)).collect();
+            let cluster = |c| Cluster { mean: mean(c), vectors: Vec::new(), variances: Vec::new() };
+            let clusters = Clusters { columns, each: (0..count).map(cluster).collect() };
+            let found = Means::of(&clusters).distances(&row);
+            let one_by_one = |cluster: &Cluster| {
+                let mut sum = 0.0f32;
+                row.iter().zip(&cluster.mean).for_each(|(x, m)| sum += (x - m) * (x - m));
+                sum.to_bits()
+            };
+            let expected: Vec<(u32, u32)> = clusters.each.iter().map(one_by_one).zip(0..).collect();
+            let bits = |found: &[(f32, u32)]| found.iter().map(|(d, c)| (d.to_bits(), *c)).collect::<Vec<_>>();
+            assert_eq!(bits(&found), expected, "{count} clusters");
+            // Twin: another row is as far from none of them.
+            let other = Means::of(&clusters).distances(&row.iter().map(|x| x + 0.5).collect::<Vec<_>>());
+            assert!(bits(&other).iter().zip(&expected).all(|(a, b)| a != b), "can fail");
+        }
+    }
 }
