@@ -22,6 +22,8 @@ const HOLE: f64 = 0.1;
 /// How far beyond an open edge another surface is looked for, over the root of the component's area: what stands on something often
 /// hovers a hair above it.
 const BEYOND: [f32; 2] = [1e-3, 1e-2];
+/// Most surfaces behind each other among which the one that covers an open edge is looked for.
+const MOST_CROSSINGS: usize = 256;
 /// Most triangles of an inward component from which the body around it is looked for.
 const WITNESSES: usize = 9;
 
@@ -135,7 +137,8 @@ impl Component {
     fn comes_out(&self, world: &World<'_>, start: Vec3, direction: Vec3) -> bool {
         let mut ray = Ray { t_max: (self.area as f32).sqrt(), ..Ray::new(start, direction) };
         let mut entered = 0u32;
-        while let Some(hit) = world.closest(&ray) {
+        for _ in 0..MOST_CROSSINGS {
+            let Some(hit) = world.closest(&ray) else { return false };
             let other = self.triangles.binary_search(&hit.triangle).is_err();
             match (other, hit.front) {
                 (true, false) if entered == 0 => return true,

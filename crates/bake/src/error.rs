@@ -10,6 +10,16 @@ pub enum Error {
         /// Name of the scene.
         scene: String,
     },
+    /// The scene is so small that squares of areas vanish in single precision.
+    #[error("scene '{scene}' is {size} m across, too small for single precision; scale it up to at least {least} m")]
+    TooSmall {
+        /// Name of the scene.
+        scene: String,
+        /// Its largest extent, metres.
+        size: String,
+        /// The least that can be baked, metres.
+        least: &'static str,
+    },
     /// The scene is larger than the indices of the file allow.
     #[error("scene '{scene}' has {count} {what}, but a .prt file holds at most {limit}; split the scene")]
     TooLarge {

@@ -3,7 +3,7 @@
 //! Where the edge of a wall runs along those of two floors, halves of it end where the floors have no vertex: pictures have pinholes there.
 
 use crate::split::{Edge, EdgePlace, Place, cut, edge_place, edges, length, place_of};
-use glam::Vec3;
+use glam::{Vec3, Vec3Swizzles};
 use rayon::prelude::*;
 use scene::{Mesh, Scene};
 use std::borrow::Cow;
@@ -115,6 +115,16 @@ impl Open {
             && place_of(point) != self.opposite
     }
 
+    /// Whether a box may hold a point of the edge: neither the axes nor their cross products with the edge part them. The box around a
+    /// slanting edge alone would hold a large part of all points.
+    fn may_meet(&self, [min, max]: [Vec3; 2]) -> bool {
+        let [a, b, min, max] = [self.ends[0], self.ends[1], min, max].map(Vec3::as_dvec3);
+        let (half, way) = (0.5 * (b - a), 0.5 * (a + b) - 0.5 * (min + max));
+        let extent = 0.5 * (max - min) + 2.0 * f64::from(self.tolerance);
+        let across = extent.yzx() * half.zxy().abs() + extent.zxy() * half.yzx().abs();
+        way.abs().cmple(extent + half.abs()).all() && half.cross(way).abs().cmple(across * (1.0 + 1e-9)).all()
+    }
+
     /// Whether what leads from a point on the edge to another one runs along the edge.
     fn goes_along(&self, from: Vec3, to: Vec3) -> bool {
         let [a, b] = self.ends;
@@ -202,13 +212,11 @@ impl Points {
 
     /// The points on an edge.
     fn on(&self, edge: &Open) -> Vec<Vec3> {
-        let [a, b] = edge.ends;
-        let (min, max) = (a.min(b) - edge.tolerance, a.max(b) + edge.tolerance);
         let mut found = Vec::new();
         let mut stack = Vec::from_iter((!self.nodes.is_empty()).then_some(0));
         while let Some(index) = stack.pop() {
             let node = &self.nodes[index];
-            if max.cmplt(node.min).any() || min.cmpgt(node.max).any() {
+            if !edge.may_meet([node.min, node.max]) {
                 continue;
             }
             if node.second == 0 {
@@ -239,4 +247,67 @@ fn build(points: &mut [Vec3], range: std::ops::Range<usize>, nodes: &mut Vec<Nod
     build(points, range.start..range.start + half, nodes);
     nodes[index].second = nodes.len();
     build(points, range.start + half..range.end, nodes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Slanting teeth side by side, each of a mesh of three vertices of its own.
+    fn teeth(count: u32) -> Scene {
+        let tooth = |k: u32| {
+            let at = k as f32 / count as f32;
+            let positions = [[at, 0.0, 0.0], [at + 0.9 / count as f32, 0.0, 0.0], [at + 1.0, 0.3, 1.0]];
+            Mesh { positions: positions.map(Vec3::from).to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() }
+        };
+        Scene { meshes: (0..count).map(tooth).collect(), ..Scene::default() }
+    }
+
+    /// Boxes of points that an edge may meet, on the mean, by a test.
+    fn boxes(count: u32, test: impl Fn(&Open, [Vec3; 2]) -> bool) -> f64 {
+        let scene = teeth(count);
+        let (open, points) = (open_edges(&scene, 0.5), Points::of(&scene));
+        let met = |edge: &Open| points.nodes.iter().filter(|node| test(edge, [node.min, node.max])).count();
+        open.iter().map(met).sum::<usize>() as f64 / open.len() as f64
+    }
+
+    #[test]
+    fn slanting_edges_look_at_few_points() {
+        let [few, many] = [200, 1_600].map(|count| boxes(count, Open::may_meet));
+        assert!(many < 2.0 * few, "{few} boxes of 200 teeth, {many} of 1,600");
+    }
+
+    /// By the boxes around edges each meets a part of all.
+    #[test]
+    fn slanting_edges_look_at_few_points_can_fail() {
+        let overlap = |edge: &Open, [min, max]: [Vec3; 2]| {
+            let [a, b] = edge.ends;
+            a.max(b).cmpge(min).all() && a.min(b).cmple(max).all()
+        };
+        let [few, many] = [200, 1_600].map(|count| boxes(count, overlap));
+        assert!(many > 5.0 * few, "{few} boxes of 200 teeth, {many} of 1,600");
+    }
+
+    /// What lies on an edge is found as by asking all points.
+    #[test]
+    fn points_on_edges_are_those_of_a_search_of_all() {
+        let mut scene = teeth(60);
+        let on_them: Vec<Vec3> = (0..300u32)
+            .map(|k| {
+                let [a, _, c] = scene.meshes[k as usize % 60].positions[..] else { unreachable!("a tooth") };
+                a.lerp(c, (k as f32 * 0.618_034).fract()) + Vec3::Y * if k % 3 == 0 { 1e-4 } else { 0.0 }
+            })
+            .collect();
+        scene.meshes.push(Mesh { positions: on_them, ..Mesh::default() });
+        let points = Points::of(&scene);
+        let mut found = 0;
+        for edge in open_edges(&scene, 0.5) {
+            let all: Vec<Vec3> = points.points.iter().copied().filter(|&point| edge.holds(point)).collect();
+            let mut on = points.on(&edge);
+            on.sort_by_key(|point| points.points.iter().position(|other| other == point));
+            assert_eq!(on, all);
+            found += all.len();
+        }
+        assert!(found > 100, "can fail: {found} points lie on edges");
+    }
 }

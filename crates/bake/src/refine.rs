@@ -16,6 +16,7 @@ use crate::towards::{most_triangles, towards, triangles};
 use crate::world::World;
 use crate::{Error, ProgressFn, settings};
 use coeff_io::{Effect, Refine, Settings};
+use glam::Vec3;
 use rayon::prelude::*;
 use scene::{Mesh, Scene};
 use std::borrow::Cow;
@@ -23,6 +24,8 @@ use std::ops::ControlFlow;
 
 /// Triangles that a scene of few, large ones is split into at least.
 pub(crate) const LEAST_TRIANGLES: f64 = 20_000.0;
+/// Least size of a scene, metres: of smaller ones squares of the areas of small triangles are less than single precision holds.
+const LEAST_SIZE: f32 = 1e-8;
 /// Rounds of halving; each halves the longest edges, so that these reach 1/4096 of the first.
 const ROUNDS: usize = 12;
 /// Rounds of halving where transfer bends: edges down to an eighth of the even ones are halved.
@@ -58,7 +61,20 @@ pub(crate) fn refined<'a>(
     if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
         return Err(Error::EmptyScene { scene: scene.name.clone() });
     }
+    let size = size(scene);
+    if size > 0.0 && size < LEAST_SIZE {
+        let (size, least) = (format!("{size:.0e}"), "1e-8");
+        return Err(Error::TooSmall { scene: scene.name.clone(), size, least });
+    }
     refine_watched(scene, settings, progress)
+}
+
+/// Largest extent of the vertices, metres; what is not finite does not count.
+fn size(scene: &Scene) -> f32 {
+    let finite = || scene.meshes.iter().flat_map(|mesh| &mesh.positions).filter(|p| p.is_finite());
+    let low = finite().fold(Vec3::INFINITY, |low, p| low.min(*p));
+    let high = finite().fold(Vec3::NEG_INFINITY, |high, p| high.max(*p));
+    (high - low).max_element()
 }
 
 /// [`refine`] that reports progress and can be cancelled.

@@ -10,7 +10,7 @@ use scene::Mesh;
 use std::collections::{HashMap, HashSet};
 
 /// Slivers that call for it; fewer are halved one by one.
-const LEAST: usize = 64;
+const LEAST: usize = 128;
 /// Height of a sliver over its long edge, in that edge, at most.
 const THIN: f64 = 1.0 / 8.0;
 /// Distance from a plane that counts as none, in steps of the largest coordinate.

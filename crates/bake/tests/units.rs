@@ -99,3 +99,27 @@ fn centimetres_are_as_good_as_metres() {
     let count = |prt: &Prt| prt.transfer.values.len() as f32;
     assert!((count(&prt) / count(&metres) - 1.0).abs() < 0.02);
 }
+
+/// Openness of every receiver of a bake of direct light, in another unit.
+fn openness(unit: f32) -> Result<Vec<f32>, bake::Error> {
+    let settings = Settings { bounces: Bounces::Fixed(0), effects: Effects::Auto, ..settings() };
+    bake::bake(&scene(unit), &settings, &|_| std::ops::ControlFlow::Continue(())).map(|prt| prt.transfer.openness)
+}
+
+/// A unit of 60 nanometres is as good as any; one of 1e-20 m is refused in one sentence that names what to do.
+#[test]
+fn tiny_units_are_the_same_or_are_refused() {
+    let metres = openness(1.0).expect("it bakes");
+    let tiny = openness(0.5f32.powi(24)).expect("it bakes");
+    assert!(metres == tiny, "another openness in another unit");
+    let error = openness(1e-20).expect_err("it is refused").to_string();
+    assert!(error.contains("e-20 m across") && error.contains("scale it up to at least 1e-8 m"), "{error}");
+    assert!(!error.contains('\n'));
+}
+
+/// The refusal is called for: squares of areas are nothing there.
+#[test]
+fn tiny_units_are_the_same_or_are_refused_can_fail() {
+    assert!(1e-20f32.powi(4) == 0.0 && (1e-8f32).powi(4) > f32::MIN_POSITIVE);
+    assert!(openness(1.0).expect("it bakes").iter().any(|open| *open < 0.9), "something is shaded");
+}
