@@ -10,7 +10,7 @@
 mod mapped;
 mod named;
 #[path = "../tests/support/mod.rs"]
-#[expect(unused_imports, dead_code, reason = "only its light is used")]
+#[expect(unused_imports, reason = "only its light is used")]
 mod support;
 
 use coeff_io::{Bounces, Camera, Prt, Quality};

@@ -4,7 +4,7 @@
 //! same name prints the figures of all bases.
 
 mod mapped;
-#[expect(unused_imports, dead_code, reason = "only its light is used")]
+#[expect(unused_imports, reason = "only its light is used")]
 mod support;
 
 use coeff_io::{Bounces, Prt, Quality};

@@ -1,18 +1,21 @@
 //! Cuts edges where they come out of a body, at vertices inside it whose edges come out on sides that see differently.
 //!
 //! A vertex inside a body holds what its surface sees where it comes out. On a capital under a wall one edge comes out before the wall, in the
-//! light, and another beside it, in the shade of an arch: one value cannot serve both, so each gets a vertex of its own.
+//! light, and another beside it, in the shade of an arch: one value cannot serve both, so each gets a vertex of its own. So does what comes out
+//! between two bodies (a wall between a window frame and the awning above it): no vertex inside either tells how dark it is there.
 
 use crate::directions::DirectionBank;
-use crate::gather::{Gatherer, Worker};
+use crate::gather::{Gathered, Gatherer, Worker};
+use crate::ledge::{self, sent_to};
 use crate::passes::Monitor;
 use crate::receivers::{FaceSums, Receiver};
-use crate::repair::{entry, is_inside};
-use crate::split::{Edge, EdgePlace as Place, cut, edge_place as place, edges, place_of};
+use crate::repair::{entry, is_hidden, is_inside};
+use crate::split::{Edge, EdgePlace as Place, cut, edge_place as place, edges, place_of, sorted};
 use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
 use rayon::prelude::*;
+use raytrace::{Ray, offset_origin};
 use scene::{Mesh, Scene};
 use sh_math::Bands;
 use std::borrow::Cow;
@@ -23,8 +26,21 @@ const BANDS: u32 = 3;
 const RAYS: u32 = 64;
 /// Distance of what two exits see, against an open receiver's, from where each gets a vertex.
 const DIFFERENT: f32 = 0.15;
+/// The same for light of other surfaces at exits in the dark.
+const DIM: f32 = 0.05;
+/// Shortest part of an edge between two bodies that gets a vertex, over the edge.
+const LEAST: f32 = 1.0 / 32.0;
 /// Shares along an edge are multiples of this: theirs and what is left of 1 are exact.
 const STEPS: f32 = 4096.0;
+
+/// What is looked for.
+#[derive(Clone, Copy)]
+enum Look {
+    /// What comes out between two bodies.
+    Gaps,
+    /// Where edges come out to differing sights.
+    Exits,
+}
 
 /// Where an edge is cut: its ends by position, and the share of the way from the first.
 type Cuts = HashMap<Place, f32>;
@@ -33,6 +49,7 @@ type Cuts = HashMap<Place, f32>;
 pub(crate) fn cut_at_exits<'a>(
     mut scene: Cow<'a, Scene>,
     world: &World<'_>,
+    settings: &Settings,
     monitor: &Monitor<'_>,
 ) -> Result<Cow<'a, Scene>, Error> {
     if !world.bodies.any() {
@@ -41,31 +58,96 @@ pub(crate) fn cut_at_exits<'a>(
     let bands = Bands::new(BANDS).expect("a constant in range");
     let quality = Quality::Rays(RAYS);
     let bank = DirectionBank::new(bands, &Settings { bands: BANDS, quality, ..settings::standard() });
+    let bounces = ledge::matters(settings);
     let gatherer = Gatherer::of_direct_light(world, &bank, bands, quality);
-    let mut cuts = Cuts::new();
+    let mut inside = Vec::new();
     for mesh in &scene.meshes {
-        add_cuts(mesh, &gatherer, &mut cuts);
+        inside.push(stuck(mesh, &gatherer));
         monitor.check()?;
     }
-    if !cuts.is_empty() {
-        for mesh in &mut scene.to_mut().meshes {
-            cut(mesh, |mesh, edge| {
-                let share = *cuts.get(&place(mesh, edge))?;
-                Some(turned(mesh, edge, share))
-            });
+    // First what comes out between two bodies: to the vertices inside them that is one more way out.
+    for look in [Look::Gaps, Look::Exits] {
+        let mut cuts = Cuts::new();
+        for (mesh, inside) in scene.meshes.iter().zip(&mut inside) {
+            inside.resize(mesh.positions.len(), false);
+            match look {
+                Look::Gaps => add_gaps(mesh, inside, &gatherer, &mut cuts),
+                Look::Exits => add_exits(mesh, inside, (&gatherer, bounces), &mut cuts),
+            }
+            monitor.check()?;
+        }
+        if !cuts.is_empty() {
+            for mesh in &mut scene.to_mut().meshes {
+                cut(mesh, |mesh, edge| {
+                    let share = *cuts.get(&place(mesh, edge))?;
+                    Some(turned(mesh, edge, share))
+                });
+            }
         }
     }
     Ok(scene)
 }
 
+/// Which vertices of a mesh stand inside bodies.
+fn stuck(mesh: &Mesh, gatherer: &Gatherer<'_>) -> Vec<bool> {
+    let faces = FaceSums::of(mesh);
+    (0..mesh.positions.len())
+        .into_par_iter()
+        .map_init(Worker::new, |worker, v| is_stuck(gatherer, &faces.receiver(mesh, v), worker))
+        .collect()
+}
+
+/// Finds edges from inside a body that come out and run into another.
+fn add_gaps(mesh: &Mesh, inside: &[bool], gatherer: &Gatherer<'_>, cuts: &mut Cuts) {
+    let faces = FaceSums::of(mesh);
+    let is_inside = |v: u32| inside[v as usize];
+    // An end inside comes first.
+    let from_inside = |[a, b]: Edge| if is_inside(a) { [a, b] } else { [b, a] };
+    let all = mesh.triangles.iter().flat_map(edges).map(sorted).map(from_inside);
+    let ways: Vec<Edge> = all.filter(|edge| is_inside(edge[0])).collect::<BTreeSet<_>>().into_iter().collect();
+    let found: Vec<Option<f32>> = ways
+        .par_iter()
+        .map_init(Worker::new, |worker, edge| {
+            let [from, to] = edge.map(|v| faces.receiver(mesh, v as usize));
+            let share = gap(gatherer.world, &from, &to, is_inside(edge[1]))?;
+            let seen = gatherer.gather(&from.towards(&to, share), 0, worker);
+            let shows = !is_inside_body(&seen) && !is_hidden(seen.openness, seen.behind_share);
+            shows.then_some(share)
+        })
+        .collect();
+    ways.into_iter().zip(found).filter_map(|(edge, share)| Some((edge, share?))).for_each(|(edge, share)| {
+        add_cut(mesh, edge, share, cuts);
+    });
+}
+
+/// The middle of the longest part of the way between two receivers that lies in the open, in shares of it, where the first is inside a body
+/// and the part ends at bodies on both sides. Whether the last is inside one too is told.
+fn gap(world: &World<'_>, from: &Receiver, to: &Receiver, is_to_inside: bool) -> Option<f32> {
+    let start = offset_origin(from.position, from.geometric_normal);
+    let end = offset_origin(to.position, from.geometric_normal);
+    let mut ray = Ray { t_max: 1.0, ..Ray::new(start, end - start) };
+    // Places where surfaces are met, and in how many more bodies the way is from there on than at its start.
+    let (mut met, mut depth) = (Vec::new(), 0);
+    while let Some(hit) = world.closest(&ray) {
+        if world.bodies.bound(hit.triangle) {
+            depth += if hit.front { 1 } else { -1 };
+            met.push((hit.t, depth));
+        }
+        ray.t_min = hit.t.next_up();
+    }
+    let least = met.iter().map(|(_, depth)| *depth).min()?;
+    if least >= 0 || !is_to_inside && depth != least {
+        return None;
+    }
+    let parts = met.windows(2).filter(|pair| pair[0].1 == least).map(|pair| [pair[0].0, pair[1].0]);
+    let [low, high] = parts.max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))?;
+    (high - low > LEAST).then_some(0.5 * (low + high))
+}
+
 /// Finds the exits of a mesh that are worth a vertex.
-fn add_cuts(mesh: &Mesh, gatherer: &Gatherer<'_>, cuts: &mut Cuts) {
+fn add_exits(mesh: &Mesh, inside: &[bool], (gatherer, bounces): (&Gatherer<'_>, bool), cuts: &mut Cuts) {
     let faces = FaceSums::of(mesh);
     let receiver = |v: usize| faces.receiver(mesh, v);
-    let inside: Vec<bool> = (0..mesh.positions.len())
-        .into_par_iter()
-        .map_init(Worker::new, |worker, v| is_stuck(gatherer, &receiver(v), worker))
-        .collect();
     let mut ways: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
     for [a, b] in mesh.triangles.iter().flat_map(edges) {
         for [from, to] in [[a, b], [b, a]] {
@@ -79,16 +161,19 @@ fn add_cuts(mesh: &Mesh, gatherer: &Gatherer<'_>, cuts: &mut Cuts) {
         .par_iter()
         .map_init(Worker::new, |worker, (from, out)| {
             let ends = out.iter().map(|&to| (to, receiver(to as usize)));
-            exits(gatherer, &receiver(*from as usize), ends, worker)
+            exits(gatherer, &receiver(*from as usize), ends, bounces, worker)
                 .into_iter()
                 .map(|(to, share)| ([to, *from], share))
                 .collect()
         })
         .collect();
-    for ([to, from], share) in found.into_iter().flatten() {
-        let share = (share * STEPS).round().clamp(1.0, STEPS - 1.0) / STEPS;
-        cuts.entry(place(mesh, [to, from])).or_insert(turned(mesh, [to, from], share));
-    }
+    found.into_iter().flatten().for_each(|(edge, share)| add_cut(mesh, edge, share, cuts));
+}
+
+/// Notes that an edge is cut at a share of the way from its first vertex.
+fn add_cut(mesh: &Mesh, edge: Edge, share: f32, cuts: &mut Cuts) {
+    let share = (share * STEPS).round().clamp(1.0, STEPS - 1.0) / STEPS;
+    cuts.entry(place(mesh, edge)).or_insert(turned(mesh, edge, share));
 }
 
 /// A share of the way along an edge as its place counts it, which has the ends in an order of its own; and back.
@@ -103,6 +188,10 @@ fn is_stuck(gatherer: &Gatherer<'_>, receiver: &Receiver, worker: &mut Worker) -
         return false;
     }
     let seen = gatherer.gather(receiver, 0, worker);
+    is_inside_body(&seen)
+}
+
+fn is_inside_body(seen: &Gathered) -> bool {
     is_inside(seen.openness, seen.inside_share)
 }
 
@@ -111,20 +200,36 @@ fn exits(
     gatherer: &Gatherer<'_>,
     from: &Receiver,
     ends: impl Iterator<Item = (u32, Receiver)>,
+    bounces: bool,
     worker: &mut Worker,
 ) -> Vec<(u32, f32)> {
-    let mut found: Vec<(u32, f32, Vec<f32>)> = Vec::new();
+    let mut found: Vec<(u32, f32, Receiver)> = Vec::new();
     for (to, end) in ends {
         let Some(share) = entry(gatherer.world, &end, from) else { continue };
-        let at = Receiver { position: end.position + share * (from.position - end.position), ..end };
-        found.push((to, share, gatherer.direct(&at, 0, worker).0.transfer));
+        found.push((to, share, end.towards(from, share)));
     }
-    let differs = |a: &[f32], b: &[f32]| {
-        let square: f32 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
-        square.sqrt() > DIFFERENT * gatherer.bank.open_norm as f32
-    };
-    let any = found.iter().any(|one| differs(&one.2, &found[0].2));
-    if any { found.into_iter().map(|(to, share, _)| (to, share)).collect() } else { Vec::new() }
+    if found.len() < 2 {
+        return Vec::new();
+    }
+    let open = gatherer.bank.open_norm as f32;
+    let looks: Vec<Vec<f32>> = found.iter().map(|one| gatherer.direct(&one.2, 0, worker).0.transfer).collect();
+    let mut differ = apart(&looks) > DIFFERENT * open;
+    if bounces && looks.iter().all(|look| norm(look.iter().copied()) < DIFFERENT * open) {
+        // Where hardly any sky is seen, light of other surfaces is all there is.
+        let looks: Vec<Vec<f32>> = found.iter().map(|one| sent_to(gatherer, &one.2, worker)).collect();
+        differ |= apart(&looks) > DIM * open;
+    }
+    if differ { found.into_iter().map(|(to, share, _)| (to, share)).collect() } else { Vec::new() }
+}
+
+fn norm(look: impl Iterator<Item = f32>) -> f32 {
+    look.map(|x| x * x).sum::<f32>().sqrt()
+}
+
+/// Largest distance of a look from the first.
+fn apart(looks: &[Vec<f32>]) -> f32 {
+    let from_first = |look: &Vec<f32>| norm(look.iter().zip(&looks[0]).map(|(a, b)| a - b));
+    looks.iter().map(from_first).fold(0.0, f32::max)
 }
 
 #[cfg(test)]

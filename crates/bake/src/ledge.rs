@@ -6,6 +6,7 @@
 use crate::gather::{Gatherer, Worker};
 use crate::hit::NearPoint;
 use crate::plan::allowed;
+use crate::receivers::Receiver;
 use coeff_io::{Bounces, Effect, Settings};
 use glam::Vec3;
 use raytrace::{Hit, Ray};
@@ -49,6 +50,22 @@ fn fades_from(
     let mut sent = |hit: Hit| Sent::by(gatherer, &hit, worker);
     let (near, far) = (sent(near), far.map(sent).unwrap_or_default());
     near.distance(&far) > DIFFERENT * gatherer.bank.open_norm as f32
+}
+
+/// What surfaces send to a receiver of the light that falls on them straight, `[channel of 3][coefficient]`.
+pub(crate) fn sent_to(gatherer: &Gatherer<'_>, at: &Receiver, worker: &mut Worker) -> Vec<f32> {
+    let (seen, step) = gatherer.direct(at, 0, worker);
+    let mut all = vec![0.0; 3 * seen.transfer.len()];
+    if seen.openness >= 1.0 {
+        return all;
+    }
+    for (_, hit, weight) in gatherer.blockers(0, step, seen.openness, worker).found {
+        let sent = Sent::by(gatherer, &hit, worker);
+        for (channel, sum) in all.chunks_mut(seen.transfer.len()).enumerate() {
+            sum.iter_mut().zip(&sent.transfer).for_each(|(sum, x)| *sum += weight * sent.share[channel] * x);
+        }
+    }
+    all
 }
 
 /// What a surface sends on of the light that falls on it straight, from the side where a ray met it.

@@ -133,6 +133,11 @@ impl Receiver {
         Self { rounding: rounding(extent, self.geometric_normal), ..self }
     }
 
+    /// The same at a share of the way to another.
+    pub(crate) fn towards(&self, other: &Self, share: f32) -> Self {
+        Self { position: self.position + share * (other.position - self.position), ..*self }
+    }
+
     /// The same point of the surface seen from behind.
     pub(crate) fn back(&self) -> Self {
         // Over a fold a front is drawn in to above the surface, which is below it on the back.

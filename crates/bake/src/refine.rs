@@ -108,7 +108,7 @@ pub fn refine_watched<'a>(
             let (refined, small) = towards(evenly(joined, longest)?, Proximity::new(small))?;
             let bends = Bends::new(&world, &refined, settings);
             let split = at_bends(refined, longest, &small, bends, &monitor)?;
-            cut_at_exits(split, &world, &monitor)
+            cut_at_exits(split, &world, settings, &monitor)
         }
     }
 }

@@ -48,7 +48,7 @@ pub(crate) fn is_inside(openness: f32, inside_share: f32) -> bool {
 /// Open share below which a point may be hidden.
 const HIDDEN: f32 = 0.02;
 /// More than this share of what it sees being the backs of surfaces with one side means that it is.
-const BEHIND: f32 = 0.5;
+const BEHIND: f32 = 0.8;
 
 /// Whether a point of this open share, which meets backs of surfaces with one side in this share of its blocked directions, lies in the dark
 /// under a shell that is drawn from its other side alone: no view shows it.

@@ -6,7 +6,7 @@ use bake::refine;
 use coeff_io::{Bounces, Prt, Refine, Sampler, Settings};
 use glam::{Vec3, Vec4};
 use scene::{Material, Scene};
-use support::{fixed, quiet, rectangle, under_white};
+use support::{drawn, fixed, quiet, rectangle, under_white};
 
 /// Albedo of wall and ledge; the floor is black.
 const ALBEDO: f64 = 0.8;
@@ -59,20 +59,6 @@ fn expected(height: f64) -> f64 {
         lit * (share(height, edge(k + 1)) - share(height, edge(k)))
     };
     ALBEDO * (sky + ALBEDO * (0..strips as usize).map(strip).sum::<f64>())
-}
-
-/// Radiance as it is drawn at a point of the wall: between the corners of its triangle.
-fn drawn(prt: &Prt, radiance: &[f64], x: f64, y: f64) -> f64 {
-    let corner = |v: u32| prt.geometry.positions[v as usize].map(f64::from);
-    let on = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(corner);
-        let area = |p: [f64; 3], q: [f64; 3]| (p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x);
-        let parts = [area(b, c), area(c, a), area(a, b)];
-        let (whole, flat) = (parts.iter().sum::<f64>(), [a, b, c].iter().all(|p| p[2] == 0.0));
-        let within = flat && whole > 1e-12 && parts.iter().all(|part| part / whole > -1e-9);
-        within.then(|| (0..3).map(|k| parts[k] / whole * radiance[t[k] as usize]).sum::<f64>())
-    };
-    prt.geometry.triangles.iter().find_map(on).expect("a point of the wall")
 }
 
 /// Mean difference from the closed form over the heights, as a share of its mean.

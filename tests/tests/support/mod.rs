@@ -1,4 +1,5 @@
 //! Measures how far baked transfer is from the path tracer.
+#![allow(dead_code, reason = "each test file uses a part")]
 
 mod light;
 mod measure;

@@ -15,6 +15,8 @@ const PROBES: [u32; 2] = [256, 64];
 /// Share of the blocked rays that meet the insides of solid things from which a place counts as buried. The bake mends its
 /// receivers from a share of one half on; between the two its estimate and this one may differ.
 const BURIED: f32 = 0.4;
+/// The same of backs that are not drawn, where next to no sky is seen. Among leaves half of what one sees are backs.
+const SHELL: f32 = 0.8;
 /// Most open rays and fewest that meet backs, of those that start behind a surface around something solid.
 const SEALED: [f32; 2] = [0.02, 0.6];
 
@@ -60,10 +62,8 @@ impl<'a> Solids<'a> {
     /// Whether a place sees next to no sky and mostly backs that are not drawn, those of masked shells too: the dark there is not seen.
     fn is_under_shell(&self, receiver: &Receiver, rng: &mut Rng) -> bool {
         let origin = offset_origin(receiver.position, receiver.geometric_normal);
-        let is_undrawn =
-            |hit: &Hit| !hit.front && !self.scene.material(self.parts[hit.triangle as usize][0]).double_sided;
-        let seen = self.look(origin, receiver.normal, PROBES[0], rng, &is_undrawn);
-        1.0 - seen.blocked <= SEALED[0] && seen.backs > 0.5 * seen.blocked
+        let seen = self.look(origin, receiver.normal, PROBES[0], rng, &|hit| self.is_undrawn(hit));
+        1.0 - seen.blocked <= SEALED[0] && seen.backs > SHELL * seen.blocked
     }
 
     /// Whether no walk from front to front finds the sky and most end on backs: a pocket between things that run into each other. What
@@ -76,7 +76,7 @@ impl<'a> Solids<'a> {
             for _ in 0..STEPS {
                 let direction = frame.to_world(square_to_cosine_concentric(rng.next_square()));
                 let Some(hit) = self.closest(&Ray::new(origin, direction)) else { return false };
-                if self.is_back(&hit) {
+                if self.is_undrawn(&hit) {
                     ended += 1;
                     break;
                 }
@@ -128,6 +128,11 @@ impl<'a> Solids<'a> {
         let mesh = &self.scene.meshes[mesh];
         let [a, b, c] = mesh.triangles[triangle].map(|v| mesh.positions[v as usize]);
         (a + hit.u * (b - a) + hit.v * (c - a), (b - a).cross(c - a).normalize_or_zero())
+    }
+
+    /// Whether a hit is on a back that is not drawn.
+    fn is_undrawn(&self, hit: &Hit) -> bool {
+        !hit.front && !self.scene.material(self.parts[hit.triangle as usize][0]).double_sided
     }
 
     /// Whether a hit is on the back of an opaque one-sided surface.

@@ -51,12 +51,27 @@ impl Subject {
 
     /// The same with settings of one's own.
     pub(crate) fn bake_with(scene: Scene, settings: &Settings, count: usize) -> Self {
+        let (mut subject, all) = Self::bake_all(scene, settings);
+        subject.draw(&all, (0..all.permanent).collect(), count);
+        subject
+    }
+
+    /// Bakes a scene and takes all receivers within a box, and one place on each triangle that has a corner there.
+    pub(crate) fn bake_within(scene: Scene, settings: &Settings, [low, high]: [Vec3; 2]) -> Self {
+        let (mut subject, all) = Self::bake_all(scene, settings);
+        let is_within = |&row: &usize| all.list[row].vertex.cmpge(low).all() && all.list[row].vertex.cmple(high).all();
+        let rows: Vec<usize> = (0..all.permanent).filter(is_within).collect();
+        let count = rows.len();
+        subject.draw(&all, rows, count);
+        subject.spots.extend(subject.between(&is_within));
+        subject
+    }
+
+    fn bake_all(scene: Scene, settings: &Settings) -> (Self, Receivers) {
         let prt = bake::bake(&scene, settings, &|_| ControlFlow::Continue(())).expect("the scene bakes");
         let all = Receivers::of(&bake::refine(&scene, settings).expect("the bake has split it before"));
         assert_eq!(prt.geometry.positions.len(), all.permanent, "rows of the transfer are the receivers, in order");
-        let mut subject = Self { scene, prt, spots: Vec::new(), moved: 0, buried: 0, flat: 0 };
-        subject.draw(&all, count);
-        subject
+        (Self { scene, prt, spots: Vec::new(), moved: 0, buried: 0, flat: 0 }, all)
     }
 
     /// The compared places as the path tracer takes them, spot after spot.
@@ -99,10 +114,9 @@ impl Subject {
         [0, 1, 2].map(|c| albedo[c] * mean(c))
     }
 
-    /// Draws a random subset of all receivers.
-    fn draw(&mut self, all: &Receivers, count: usize) {
+    /// Draws a random subset of receivers.
+    fn draw(&mut self, all: &Receivers, mut order: Vec<usize>, count: usize) {
         let mut rng = Rng::new(1, 0);
-        let mut order: Vec<usize> = (0..all.permanent).collect();
         for k in (1..order.len()).rev() {
             order.swap(k, (rng.next_u64() % (k as u64 + 1)) as usize);
         }
@@ -152,6 +166,23 @@ impl Subject {
             }
         }
         places
+    }
+
+    /// A random place that shows on each triangle with a corner that is asked for.
+    fn between(&self, is_asked: &dyn Fn(&usize) -> bool) -> Vec<Spot> {
+        let (mut rng, solids) = (Rng::new(2, 0), Solids::of(&self.scene));
+        let triangles = self.prt.geometry.triangles.iter().map(|t| t.map(|v| v as usize));
+        let around: Vec<[usize; 3]> = triangles.filter(|t| t.iter().any(is_asked)).collect();
+        let mut spots = Vec::new();
+        for triangle in around {
+            let (u, v) = rng.next_square().into();
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let place = self.place(triangle, [1.0 - u - v, u, v]);
+            if solids.shows(&place.at, &mut rng) {
+                spots.push(Spot { row: triangle[0], places: vec![place] });
+            }
+        }
+        spots
     }
 
     /// Corners of a triangle, and its normal with twice its area as length.

@@ -66,3 +66,17 @@ pub(crate) fn rectangle(corner: Vec3, along: Vec3, across: Vec3, [columns, rows]
         ..Mesh::default()
     }
 }
+
+/// Radiance as it is drawn at a point of the plane z = 0: between the corners of its triangle.
+pub(crate) fn drawn(prt: &Prt, radiance: &[f64], x: f64, y: f64) -> f64 {
+    let corner = |v: u32| prt.geometry.positions[v as usize].map(f64::from);
+    let on = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(corner);
+        let area = |p: [f64; 3], q: [f64; 3]| (p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x);
+        let parts = [area(b, c), area(c, a), area(a, b)];
+        let (whole, flat) = (parts.iter().sum::<f64>(), [a, b, c].iter().all(|p| p[2] == 0.0));
+        let within = flat && whole > 1e-12 && parts.iter().all(|part| part / whole > -1e-9);
+        within.then(|| (0..3).map(|k| parts[k] / whole * radiance[t[k] as usize]).sum::<f64>())
+    };
+    prt.geometry.triangles.iter().find_map(on).expect("a point of the wall")
+}
