@@ -22,6 +22,8 @@ const NEIGHBOURS: usize = 14;
 const FEW: usize = 1024;
 /// Boxes that are looked at in all rounds, for each that there is, from which on pairing is slow. Most scenes take 3 to 5.
 const SLOW: usize = 12;
+/// So few boxes pair in a moment, however many rounds they take.
+const PAIRED: usize = 256;
 /// Least part of the boxes on either side of a cut, so that halves of halves come to an end soon.
 const LEAST_PART: usize = 8;
 
@@ -109,18 +111,20 @@ fn spread(bits: u64) -> u64 {
     (0..21).map(|k| (bits >> k & 1) << (3 * k)).sum()
 }
 
-/// Cuts the boxes in two across the longest extent of their middles, where that is cheapest, and the parts in turn.
+/// Cuts the boxes in two where that is cheapest, across any axis, and the parts in turn, until so few are left that they pair soon.
 fn halved(boxes: &[Aabb], numbers: Vec<u32>) -> Bvh2 {
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut nodes = vec![Bvh2Node::default()];
     let mut open = vec![(0, 0..order.len())];
     while let Some((node, range)) = open.pop() {
         let part = &mut order[range.clone()];
-        let around = part.iter().fold(Aabb::empty(), |all, &one| all.union(&boxes[one as usize]));
-        if let &mut [one] = part {
-            nodes[node] = Bvh2Node::new(around, 1, numbers[one as usize]);
+        if part.len() <= PAIRED {
+            let own: Vec<Aabb> = part.iter().map(|&one| boxes[one as usize]).collect();
+            let whose = part.iter().map(|&one| numbers[one as usize]).collect();
+            graft(&mut nodes, node, &own, whose);
             continue;
         }
+        let around = part.iter().fold(Aabb::empty(), |all, &one| all.union(&boxes[one as usize]));
         let (children, middle) = (nodes.len(), range.start + cut(boxes, part));
         nodes[node] = Bvh2Node::new(around, 0, children as u32);
         nodes.extend([Bvh2Node::default(); 2]);
@@ -129,22 +133,51 @@ fn halved(boxes: &[Aabb], numbers: Vec<u32>) -> Bvh2 {
     Bvh2 { nodes, primitive_indices: numbers, children_are_ordered_after_parents: true, ..Bvh2::default() }
 }
 
-/// Sorts boxes along the longest extent of their middles; how many come before the cheapest cut.
+/// Puts the tree of a few boxes, found by pairing, in the place of a node.
+fn graft(nodes: &mut Vec<Bvh2Node>, node: usize, boxes: &[Aabb], numbers: Vec<u32>) {
+    let tree = PlocBuilder::with_capacity(boxes.len()).build(DISTANCE, boxes, numbers, SortPrecision::U128, 1);
+    let before = nodes.len() as u32 - 1;
+    let moved = |mut one: Bvh2Node| {
+        one.first_index += if one.is_leaf() { 0 } else { before };
+        one
+    };
+    let mut grafted = tree.nodes.iter().copied().map(moved);
+    nodes[node] = grafted.next().unwrap_or_default();
+    nodes.extend(grafted);
+}
+
+/// Sorts boxes along the axis on which a cut is cheapest; how many come before it.
 fn cut(boxes: &[Aabb], part: &mut [u32]) -> usize {
-    let middle = |one: u32| boxes[one as usize].center();
-    let all = part.iter().fold(Aabb::empty(), |mut all, &one| *all.extend(middle(one)));
-    let axis = all.largest_axis();
-    part.sort_unstable_by(|&a, &b| middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(&b)));
+    let cheapest = |axis: usize| {
+        let mut sorted = part.to_vec();
+        sort(boxes, &mut sorted, axis);
+        let (cost, before) = cheapest_cut(boxes, &sorted);
+        (cost, before, sorted)
+    };
+    let [x, y, z] = [0, 1, 2].map(cheapest);
+    let (_, before, sorted) = [y, z].into_iter().fold(x, |best, one| if one.0 < best.0 { one } else { best });
+    part.copy_from_slice(&sorted);
+    before
+}
+
+/// Sorts boxes by their middles along an axis.
+fn sort(boxes: &[Aabb], part: &mut [u32], axis: usize) {
+    let middle = |one: u32| boxes[one as usize].center()[axis];
+    part.sort_unstable_by(|&a, &b| middle(a).total_cmp(&middle(b)).then(a.cmp(&b)));
+}
+
+/// The cost of the cheapest cut of boxes in their order, and how many come before it.
+fn cheapest_cut(boxes: &[Aabb], sorted: &[u32]) -> (f32, usize) {
     let costs = |around: &mut Aabb, &one: &u32| {
         *around = around.union(&boxes[one as usize]);
         Some(around.half_area())
     };
-    let before: Vec<f32> = part.iter().scan(Aabb::empty(), costs).collect();
-    let after: Vec<f32> = part.iter().rev().scan(Aabb::empty(), costs).collect();
-    let n = part.len();
+    let before: Vec<f32> = sorted.iter().scan(Aabb::empty(), costs).collect();
+    let after: Vec<f32> = sorted.iter().rev().scan(Aabb::empty(), costs).collect();
+    let n = sorted.len();
     let least = (n / LEAST_PART).max(1);
-    let cost = |k: usize| before[k - 1] * k as f32 + after[n - k - 1] * (n - k) as f32;
-    (least..=n - least).min_by(|&a, &b| cost(a).total_cmp(&cost(b))).unwrap_or(n / 2)
+    let cost = |k: usize| (before[k - 1] * k as f32 + after[n - k - 1] * (n - k) as f32, k);
+    (least..=n - least).map(cost).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f32::INFINITY, n / 2))
 }
 
 #[cfg(test)]
