@@ -1,7 +1,7 @@
 //! Says so where no light of a probe gets into a scene.
 
 use crate::console::Console;
-use coeff_io::{AlphaMode, Plan, Prt};
+use coeff_io::{AlphaMode, Plan, Prt, Quality};
 use glam::Vec3;
 use scene::{Bounds, Mesh, Scene};
 
@@ -13,6 +13,10 @@ const OPEN: f32 = 0.282_094_8;
 
 /// Share of the receivers that get no light where a scene counts as closed.
 const DARK: f64 = 0.8;
+/// The same where each receiver has few rays: in a hall with small openings most of them meet none.
+const DARK_BY_FEW_RAYS: f64 = 0.99;
+/// Fewer rays than so many are few.
+const FEW_RAYS: u32 = 64;
 /// So many receivers that were looked at tell of the others.
 const MANY: u64 = 16;
 
@@ -62,11 +66,19 @@ fn shell(prt: &Prt) -> Option<String> {
         .filter_map(|vertex| prt.transfer.values.get(vertex * row).map(|value| value.abs()))
         .collect();
     let dark = firsts.iter().filter(|value| **value <= CLOSED * OPEN).count();
-    let is_dark = dark > 0 && dark as f64 >= DARK * firsts.len() as f64;
+    let is_dark = dark > 0 && dark as f64 >= dark_share(prt.settings.quality) * firsts.len() as f64;
     // What is shut into a body counts as buried in it, and is repaired.
     let middle = Bounds::of(inner.iter().flat_map(|one| [one.bounds.min, one.bounds.max])).map(|b| b.center());
     let is_shut = apart && middle.is_some_and(|middle| closes(prt, outer.mesh, middle));
     (is_dark || is_shut).then(|| text(&outer.mesh.name, if is_shut { firsts.len() } else { dark } as u64))
+}
+
+/// Share of the receivers that get no light where a scene counts as closed, by how well each looked.
+fn dark_share(quality: Quality) -> f64 {
+    match quality {
+        Quality::Rays(rays) if rays < FEW_RAYS => DARK_BY_FEW_RAYS,
+        _ => DARK,
+    }
 }
 
 /// Whether an opaque mesh is closed around a point.

@@ -182,3 +182,26 @@ fn shells_and_domes_can_fail() {
     let (said, _) = scene(folder, 3.0, vec![("Lamp", lamp, material([1.0; 3], json!({ "extensions": unlit() })))]);
     assert!(!said.contains("left out"), "what is unlit and small stays: {said}");
 }
+
+/// A hall of 20 m with a slit in its roof, of which few rays tell most receivers nothing.
+#[test]
+fn a_hall_with_a_slit_is_open_to_few_rays() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let hall = Shape::cuboid([-10.0, 0.0, -10.0], [10.0, 8.0, 10.0]).turned();
+    let open = Shape { triangles: [&hall.triangles[..6], &hall.triangles[8..]].concat(), ..hall.clone() };
+    let roof = |x: [f32; 2]| Shape::cuboid([x[0], 0.0, -10.0], [x[1], 8.0, 10.0]).turned().side(3);
+    let said = |shell: Shape, more: &[Shape]| {
+        let plain = || material([0.7; 3], json!({}));
+        let mut parts = vec![("Hall", shell, plain())];
+        parts.extend(more.iter().map(|roof| ("Roof", roof.clone(), plain())));
+        model::write(folder, "hall.gltf", &[crate_on(4.0), parts].concat());
+        let few =
+            ["bake", "hall.gltf", "-o", "a.prt", "--rays", "16", "--bounces", "0", "--bands", "2", "--refine", "1"];
+        complaint(&relume(folder, &few))
+    };
+    let slit = said(open, &[roof([-10.0, -0.15]), roof([0.15, 10.0])]);
+    assert!(!slit.contains("encloses"), "{slit}");
+    let closed = said(hall, &[]);
+    assert!(closed.contains("warning: Hall: encloses"), "can fail: {closed}");
+}
