@@ -17,6 +17,11 @@ use scene::Scene;
 use scene::lightmap::Texel;
 use sh_math::Bands;
 
+/// A corner that takes less than this part of what the brightest takes is hidden.
+const HIDDEN: f32 = 0.05;
+/// Least share of a lit corner: a texel that lies on a hidden one still takes from the lit.
+const FEWEST_SHARE: f32 = 1e-3;
+
 /// What is wanted beside the transfer of the vertices; nothing by default.
 #[derive(Debug, Clone, Default)]
 pub struct Extras {
@@ -169,6 +174,16 @@ impl Done<'_> {
         (self.settings.bounces != Bounces::Fixed(0)).then_some(Shine { mirrors, direct })
     }
 
+    /// Shares of the corners of a triangle at a texel of a chart that shows by less than a texel: it shows beside its lit corners, the others are
+    /// what hides the rest of it.
+    fn shares_of_lit(&self, vertices: [u32; 3], shares: [f32; 3]) -> [f32; 3] {
+        let first = vertices.map(|vertex| self.transfer.channel(vertex, 0).first().map_or(0.0, |t| t.abs()));
+        let brightest = first.into_iter().fold(0.0, f32::max);
+        let lit = [0, 1, 2].map(|k| if first[k] < HIDDEN * brightest { 0.0 } else { shares[k].max(FEWEST_SHARE) });
+        let sum: f32 = lit.into_iter().sum();
+        if sum > 0.0 && brightest > 0.0 { lit.map(|share| share / sum) } else { shares }
+    }
+
     /// Writes what the vertices around a texel take, as irradiance / pi that is the same for every normal, by `[function][depth][channel]`.
     pub(crate) fn add_from_vertices(&self, texel: &Texel, shape: Shape, row: &mut [f32]) {
         let first: usize = self.scene.meshes[..texel.mesh as usize].iter().map(|mesh| mesh.positions.len()).sum();
@@ -176,10 +191,12 @@ impl Done<'_> {
         let [u, v] = texel.barycentrics;
         // The first function is 1 / sqrt(4 pi) everywhere.
         let constant = (4.0 * std::f32::consts::PI).sqrt();
-        for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
+        let vertices = corners.map(|corner| first as u32 + corner);
+        let shares = self.shares_of_lit(vertices, [1.0 - u - v, u, v]);
+        for (vertex, share) in vertices.into_iter().zip(shares) {
             for channel in 0..shape.channels {
                 let own = channel.min(self.transfer.channels - 1);
-                let transfer = self.transfer.channel(first as u32 + corner, own);
+                let transfer = self.transfer.channel(vertex, own);
                 match self.light {
                     Some(light) => {
                         let lit: f32 = transfer.iter().zip(&light.coefficients).map(|(t, l)| t * l[channel]).sum();

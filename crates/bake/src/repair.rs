@@ -47,13 +47,21 @@ pub(crate) fn is_inside(openness: f32, inside_share: f32) -> bool {
 
 /// Open share below which a point may be hidden.
 const HIDDEN: f32 = 0.02;
-/// More than this share of what it sees being the backs of surfaces with one side means that it is.
+/// More than this share of what a vertex sees being the backs of surfaces with one side means that it is: it is moved, which among leaves,
+/// deep in which half of what is seen are backs, brings it into the light.
 const BEHIND: f32 = 0.8;
+/// The same for a texel: it takes the light of others only beside some that are seen.
+const BEHIND_TEXEL: f32 = 0.5;
 
 /// Whether a point of this open share, which meets backs of surfaces with one side in this share of its blocked directions, lies in the dark
 /// under a shell that is drawn from its other side alone: no view shows it.
 pub(crate) fn is_hidden(openness: f32, behind_share: f32) -> bool {
     openness < HIDDEN && behind_share > BEHIND
+}
+
+/// The same of a texel of a light map or a transfer texture.
+pub(crate) fn is_hidden_texel(openness: f32, behind_share: f32) -> bool {
+    openness < HIDDEN && behind_share > BEHIND_TEXEL
 }
 
 /// Share of the way to where an edge meets a body that a receiver is moved: just before it.

@@ -238,3 +238,42 @@ fn slanting_light_is_weighed_by_the_cosine_can_fail() {
     let off = |x: f64| beside_a_plate(x, 0.15, &bands) - beside_a_plate(x, 0.15, &|cosine| cosine);
     assert!(off(0.35).abs() > 0.012, "{}", off(0.35));
 }
+
+/// Places of the columns of vertices of a ground of which a strip of 2 cm shows before a block that leaves a gap of 2.5 mm.
+const COLUMNS: [f32; 4] = [-1.0, -0.985, -0.94, 1.0];
+
+/// That ground, of texels of 10 cm: the middle of none of them shows.
+fn strip_before_a_block() -> (Scene, SheetSettings) {
+    let (_, sheet) = ground();
+    let rows = COLUMNS.iter().flat_map(|&x| [Vec3::new(x, 0.0, 1.0), Vec3::new(x, 0.0, -1.0)]);
+    let positions = Vec::from_iter(rows);
+    let uv1 = positions.iter().map(|p| 0.5 * Vec2::new(p.x + 1.0, 1.0 - p.z)).collect();
+    let triangles = [0, 2, 4].into_iter().flat_map(|k| [[k, k + 2, k + 1], [k + 1, k + 2, k + 3]]).collect();
+    let ground = Mesh { normals: vec![Vec3::Y; positions.len()], positions, triangles, uv1, ..Mesh::default() };
+    let (low, x, y, z) = (Vec3::new(-0.98, 0.0025, -1.2), Vec3::X * 2.2, Vec3::Y, Vec3::Z * 2.4);
+    let (high, far) = (low + y, low + x);
+    let sides =
+        [quad(low, z, y), quad(far, y, z), quad(low + z, x, y), quad(low, y, x), quad(high, z, x), quad(low, x, z)];
+    let meshes = Vec::from_iter(std::iter::once(ground).chain(sides));
+    (Scene { meshes, materials: vec![Material::default()], ..Scene::default() }, sheet)
+}
+
+/// A strip narrower than a texel has the half of the sky that is open there, not the dark that its texels lie in.
+#[test]
+fn a_strip_narrower_than_a_texel_keeps_its_light() {
+    let (scene, sheet) = strip_before_a_block();
+    let light = row_of_map(&scene, sheet)[0];
+    assert!((0.45..0.58).contains(&light), "{light}");
+}
+
+/// What the vertices around the middle of the texel take, each by its share.
+#[test]
+fn a_strip_narrower_than_a_texel_keeps_its_light_can_fail() {
+    let (scene, sheet) = strip_before_a_block();
+    let prt = baked(&scene, sheet);
+    let row = |vertex: usize| prt.transfer.values[vertex * 4 * prt.transfer.channels as usize];
+    let open = |vertex: usize| row(vertex) * (4.0 * std::f32::consts::PI).sqrt();
+    let share = (-0.95 - COLUMNS[1]) / (COLUMNS[2] - COLUMNS[1]);
+    let light = (1.0 - share) * open(2) + share * open(4);
+    assert!(light < 0.3 && open(2) > 0.45, "{light}, {}", open(2));
+}

@@ -20,7 +20,7 @@ pub(crate) struct Hidden {
 
 /// Whether what is found at a texel of some extent on its surface tells that no view shows it.
 pub(crate) fn is_hidden(arrival: &Arrival, extent: f32) -> bool {
-    repair::is_hidden(arrival.openness, arrival.behind_share) || arrival.cover < extent
+    repair::is_hidden_texel(arrival.openness, arrival.behind_share) || arrival.cover < extent
 }
 
 /// Fills texels inside of bodies from their chart, and hidden ones near those that are seen. Returns the hidden ones of charts that have none of
