@@ -58,7 +58,7 @@ pub(crate) struct Gathered {
     pub(crate) bounce_rays: u64,
     /// Share of the blocked directions that meet the inside of a body.
     pub(crate) inside_share: f32,
-    /// Share of the blocked directions that meet the back of a surface with one side.
+    /// Share of the blocked directions that meet the back of a surface with one side; see [`Blockers`].
     pub(crate) behind_share: f32,
     /// Blocking surfaces; their weights sum to `1 - openness`.
     pub(crate) hits: Vec<PackedHit>,
@@ -304,11 +304,12 @@ impl Gatherer<'_> {
             found.iter().filter(|(_, hit, _)| is(hit)).map(|(_, _, weight)| weight).sum()
         };
         let inside = sum(&|hit| bodies.is_inside(hit));
-        let behind = sum(&|hit| !hit.front && !self.world.is_two_sided(hit.triangle));
+        let is_back = |hit: &Hit| !hit.front && !self.world.is_two_sided(hit.triangle);
+        let behind = sum(&is_back) + sum(&|hit| is_back(hit) && !self.world.has_holes(hit.triangle));
         let [xs, ys, zs] = &worker.directions;
         let direction = |j: usize| Vec3::new(xs[j], ys[j], zs[j]);
         let found = found.into_iter().map(|(j, hit, weight)| (direction(j), hit, (weight * scale) as f32));
-        let [inside_share, behind_share] = [inside, behind].map(|sum| (sum / total) as f32);
+        let [inside_share, behind_share] = [inside, behind.min(total)].map(|sum| (sum / total) as f32);
         Blockers { rays, inside_share, behind_share, found: found.collect(), filters: Vec::new() }
     }
 

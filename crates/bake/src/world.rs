@@ -231,6 +231,12 @@ impl<'a> World<'a> {
         self.scene.materials[self.scene.meshes[self.locate(triangle).0].material as usize].double_sided
     }
 
+    /// Whether a mask cuts holes into a traced triangle's surface.
+    pub(crate) fn has_holes(&self, triangle: u32) -> bool {
+        let material = self.scene.meshes[self.locate(triangle).0].material as usize;
+        matches!(self.scene.materials[material].alpha, AlphaMode::Mask(_))
+    }
+
     /// Share of the light at a hit that the surface sends on to all sides, linear: its albedo; where it shines less what its mirror takes, and
     /// more by what the mirror of a dielectric returns on its mean where that is not sent by direction; never more than all.
     pub(crate) fn sent(&self, hit: &Hit) -> Vec3 {

@@ -47,10 +47,21 @@ fn shell_on_ground(double_sided: bool) -> Scene {
     Scene { meshes, materials: vec![Material::default(), shell], ..Scene::default() }
 }
 
+/// A cavity behind the same wall: all but the wall shows its front to the inside.
+fn cavity_behind_wall(alpha: AlphaMode) -> Scene {
+    let mut scene = shell_on_ground(false);
+    scene.materials[1].alpha = alpha;
+    for mesh in &mut scene.meshes[2..] {
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        mesh.normals.iter_mut().for_each(|normal| *normal = -*normal);
+    }
+    scene
+}
+
 /// Light of a white sky on the ground just before the wall, as renderers find it between a vertex before it and one under the shell.
-fn before_the_wall(double_sided: bool) -> f32 {
+fn before_the_wall(scene: &Scene) -> f32 {
     let settings = Settings { refine: Refine::Off, ..fixed(2, Sampler::OwenSobol, 1024, 0) };
-    let prt = quiet(&shell_on_ground(double_sided), &settings);
+    let prt = quiet(scene, &settings);
     let row = (prt.transfer.bands * prt.transfer.bands * prt.transfer.channels) as usize;
     let light = |column: u32| {
         let vertex = (SIDE / 2 * SIDE + column) as usize;
@@ -64,13 +75,27 @@ fn before_the_wall(double_sided: bool) -> f32 {
 /// Ground before a wall sees half of the sky and, so near a wall of 1 m, hardly more (Howell B-4).
 #[test]
 fn the_dark_under_a_shell_stays_there() {
-    let light = before_the_wall(false);
+    let light = before_the_wall(&shell_on_ground(false));
     assert!((0.48..0.58).contains(&light), "{light}");
 }
 
 /// The inside of a shell with two sides is seen, and is dark.
 #[test]
 fn the_dark_under_a_shell_stays_there_can_fail() {
-    let light = before_the_wall(true);
+    let light = before_the_wall(&shell_on_ground(true));
+    assert!(light < 0.45, "{light}");
+}
+
+/// Behind a wall that is drawn from outside alone its back is half of what is seen, whatever else is there.
+#[test]
+fn the_dark_behind_a_wall_stays_there() {
+    let light = before_the_wall(&cavity_behind_wall(AlphaMode::Opaque));
+    assert!((0.48..0.58).contains(&light), "{light}");
+}
+
+/// Half of a view being backs is what leaves show to each other: a vertex among them keeps its dark.
+#[test]
+fn the_dark_behind_a_wall_stays_there_can_fail() {
+    let light = before_the_wall(&cavity_behind_wall(AlphaMode::Mask(0.5)));
     assert!(light < 0.45, "{light}");
 }

@@ -17,7 +17,9 @@ pub(crate) struct Blockers {
     pub(crate) rays: u64,
     /// Share of them that meets the inside of a body.
     pub(crate) inside_share: f32,
-    /// Share of them that meets the back of a surface with one side, of a body or not; not told where some surfaces are translucent.
+    /// Share of them that meets the back of a surface with one side, of a body or not; not told where some surfaces are translucent. Backs of
+    /// walls count twice, up to 1: who stands behind one sees its back in half of the view. Those of masked surfaces count once: among leaves
+    /// half of what is seen are backs.
     pub(crate) behind_share: f32,
     /// World directions, what they meet, and their weights, which sum to what is not open.
     pub(crate) found: Vec<(Vec3, Hit, f32)>,
