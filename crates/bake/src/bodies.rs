@@ -135,10 +135,9 @@ impl Component {
 
     /// Whether a ray leaves something that it has not entered before. A surface that curves outwards stands in its own way.
     fn comes_out(&self, world: &World<'_>, start: Vec3, direction: Vec3) -> bool {
-        let mut ray = Ray { t_max: (self.area as f32).sqrt(), ..Ray::new(start, direction) };
+        let ray = Ray { t_max: (self.area as f32).sqrt(), ..Ray::new(start, direction) };
         let mut entered = 0u32;
-        for _ in 0..MOST_CROSSINGS {
-            let Some(hit) = world.closest(&ray) else { return false };
+        for hit in world.along(ray).take(MOST_CROSSINGS) {
             let other = self.triangles.binary_search(&hit.triangle).is_err();
             match (other, hit.front) {
                 (true, false) if entered == 0 => return true,
@@ -146,7 +145,6 @@ impl Component {
                 (true, true) => entered += 1,
                 (false, _) => {}
             }
-            ray.t_min = hit.t.next_up();
         }
         false
     }

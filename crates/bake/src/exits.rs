@@ -15,7 +15,6 @@ use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
 use rayon::prelude::*;
-use raytrace::{Ray, offset_origin};
 use scene::{Mesh, Scene};
 use sh_math::Bands;
 use std::borrow::Cow;
@@ -123,17 +122,11 @@ fn add_gaps(mesh: &Mesh, inside: &[bool], gatherer: &Gatherer<'_>, cuts: &mut Cu
 /// The middle of the longest part of the way between two receivers that lies in the open, in shares of it, where the first is inside a body
 /// and the part ends at bodies on both sides. Whether the last is inside one too is told.
 fn gap(world: &World<'_>, from: &Receiver, to: &Receiver, is_to_inside: bool) -> Option<f32> {
-    let start = offset_origin(from.position, from.geometric_normal);
-    let end = offset_origin(to.position, from.geometric_normal);
-    let mut ray = Ray { t_max: 1.0, ..Ray::new(start, end - start) };
     // Places where surfaces are met, and in how many more bodies the way is from there on than at its start.
     let (mut met, mut depth) = (Vec::new(), 0);
-    while let Some(hit) = world.closest(&ray) {
-        if world.bodies.bound(hit.triangle) {
-            depth += if hit.front { 1 } else { -1 };
-            met.push((hit.t, depth));
-        }
-        ray.t_min = hit.t.next_up();
+    for hit in world.along(from.way_to(to)).filter(|hit| world.bodies.bound(hit.triangle)) {
+        depth += if hit.front { 1 } else { -1 };
+        met.push((hit.t, depth));
     }
     let least = met.iter().map(|(_, depth)| *depth).min()?;
     if least >= 0 || !is_to_inside && depth != least {

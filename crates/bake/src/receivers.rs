@@ -2,6 +2,7 @@
 
 use crate::start::{extent, rounding};
 use glam::Vec3;
+use raytrace::{Ray, offset_origin};
 use scene::{Mesh, Scene};
 
 /// No receiver.
@@ -136,6 +137,12 @@ impl Receiver {
     /// The same at a share of the way to another.
     pub(crate) fn towards(&self, other: &Self, share: f32) -> Self {
         Self { position: self.position + share * (other.position - self.position), ..*self }
+    }
+
+    /// The ray from just above this receiver to above another, which it reaches at 1.
+    pub(crate) fn way_to(&self, other: &Self) -> Ray {
+        let [start, end] = [self, other].map(|one| offset_origin(one.position, self.geometric_normal));
+        Ray { t_max: 1.0, ..Ray::new(start, end - start) }
     }
 
     /// The same point of the surface seen from behind.

@@ -6,7 +6,6 @@ use crate::world::World;
 use coeff_io::RepairCounts;
 use glam::Vec3;
 use rayon::prelude::*;
-use raytrace::{Ray, offset_origin};
 use scene::Scene;
 
 /// More than this share of what a receiver sees being the insides of bodies means that it is inside one.
@@ -106,14 +105,7 @@ pub(crate) fn entry(world: &World<'_>, from: &Receiver, to: &Receiver) -> Option
 
 /// The same of the first front of a triangle that `covers` names.
 fn entry_into(world: &World<'_>, from: &Receiver, to: &Receiver, covers: &dyn Fn(u32) -> bool) -> Option<f32> {
-    let start = offset_origin(from.position, from.geometric_normal);
-    let end = offset_origin(to.position, from.geometric_normal);
-    let mut ray = Ray { t_max: 1.0, ..Ray::new(start, end - start) };
-    let mut hit = world.closest(&ray)?;
-    while !(hit.front && covers(hit.triangle)) {
-        ray.t_min = hit.t.next_up();
-        hit = world.closest(&ray)?;
-    }
+    let hit = world.along(from.way_to(to)).find(|hit| hit.front && covers(hit.triangle))?;
     Some(BEFORE * hit.t)
 }
 

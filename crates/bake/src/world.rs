@@ -194,6 +194,15 @@ impl<'a> World<'a> {
         self.tracer.closest(ray, &|triangle, u, v| self.solid(triangle, u, v))
     }
 
+    /// All surfaces along a ray, from the nearest on.
+    pub(crate) fn along(&self, mut ray: Ray) -> impl Iterator<Item = Hit> {
+        std::iter::from_fn(move || {
+            let hit = self.closest(&ray)?;
+            ray.t_min = hit.t.next_up();
+            Some(hit)
+        })
+    }
+
     /// Whether a triangle is opaque and has one side, so that its back may be the inside of a body.
     pub(crate) fn is_one_sided(&self, triangle: u32) -> bool {
         let material = &self.scene.materials[self.scene.meshes[self.locate(triangle).0].material as usize];
