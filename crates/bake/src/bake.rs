@@ -301,8 +301,7 @@ impl<'a> Run<'a> {
         let mut wanted = Wanted { worth: tolerance(self.settings.quality), ..Wanted::default() };
         let mut sink = |id: u32, seen: &Gathered| {
             last.set_direct(id, &seen.transfer, &seen.tinted);
-            let Gathered { openness, inside_share, behind_share, .. } = *seen;
-            let finding = Finding { openness, inside_share, behind_share };
+            let finding = seen.finding();
             findings[id as usize] = finding;
             errors[id as usize] = seen.error;
             achieved.visibility_rays += seen.visibility_rays;
@@ -316,7 +315,7 @@ impl<'a> Run<'a> {
                 // It looked before, from where it was moved away.
                 glints.row_mut(id).fill(0.0);
             }
-            if !finding.is_inside() && !finding.is_hidden() {
+            if !finding.is_covered() {
                 wanted.note(id, seen, world);
             }
         };

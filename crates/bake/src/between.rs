@@ -6,7 +6,6 @@ use crate::gather::{Gathered, Gatherer, Worker};
 use crate::passes::Monitor;
 use crate::progress::Stage;
 use crate::receivers::{Receiver, Receivers};
-use crate::repair::is_inside;
 use crate::world::{World, receiver_on};
 use coeff_io::{Achieved, Quality};
 use rayon::prelude::*;
@@ -148,8 +147,8 @@ fn looks(
         let look = |worker: &mut Worker, k| gatherer.gather(&point.receiver, number - 2 * index as u32 - k, worker);
         let (a, b) = (look(worker, 0), look(worker, 1));
         monitor.receiver_done(Stage::Between, total, a.visibility_rays + b.visibility_rays);
-        let inside = |look: &Gathered| is_inside(look.openness, look.inside_share);
-        (!inside(&a) && !inside(&b)).then(|| (index, error(point, [&a, &b].map(first_channel), direct)))
+        let is_inside = [&a, &b].iter().any(|look| look.finding().is_inside());
+        (!is_inside).then(|| (index, error(point, [&a, &b].map(first_channel), direct)))
     };
     let found = indices.par_iter().map_init(Worker::new, one).collect::<Vec<_>>();
     monitor.check()?;

@@ -5,11 +5,11 @@
 //! between two bodies (a wall between a window frame and the awning above it): no vertex inside either tells how dark it is there.
 
 use crate::directions::DirectionBank;
-use crate::gather::{Gathered, Gatherer, Worker};
+use crate::gather::{Gatherer, Worker};
 use crate::ledge::{self, sent_to};
 use crate::passes::Monitor;
 use crate::receivers::{FaceSums, Receiver};
-use crate::repair::{entry, is_hidden, is_inside};
+use crate::repair::entry;
 use crate::split::{Edge, EdgePlace as Place, cut, edge_place as place, edges, place_of, sorted};
 use crate::world::World;
 use crate::{Error, settings};
@@ -110,8 +110,7 @@ fn add_gaps(mesh: &Mesh, inside: &[bool], gatherer: &Gatherer<'_>, cuts: &mut Cu
             let [from, to] = edge.map(|v| faces.receiver(mesh, v as usize));
             let share = gap(gatherer.world, &from, &to, is_inside(edge[1]))?;
             let seen = gatherer.gather(&from.towards(&to, share), 0, worker);
-            let shows = !is_inside_body(&seen) && !is_hidden(seen.openness, seen.behind_share);
-            shows.then_some(share)
+            (!seen.finding().is_covered()).then_some(share)
         })
         .collect();
     ways.into_iter().zip(found).filter_map(|(edge, share)| Some((edge, share?))).for_each(|(edge, share)| {
@@ -180,12 +179,7 @@ fn is_stuck(gatherer: &Gatherer<'_>, receiver: &Receiver, worker: &mut Worker) -
     if !receiver.sound || !gatherer.world.surrounds(receiver) {
         return false;
     }
-    let seen = gatherer.gather(receiver, 0, worker);
-    is_inside_body(&seen)
-}
-
-fn is_inside_body(seen: &Gathered) -> bool {
-    is_inside(seen.openness, seen.inside_share)
+    gatherer.gather(receiver, 0, worker).finding().is_inside()
 }
 
 /// The ends of ways out of a body with the shares of the ways from there to just before it, where these see differently.

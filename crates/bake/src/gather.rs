@@ -14,7 +14,7 @@ use crate::found::mean;
 use crate::hit::{NearPoint, PackedHit, near_points, packed};
 use crate::mirror::Mirrors;
 use crate::receivers::Receiver;
-use crate::repair::{is_hidden, is_inside};
+use crate::repair::Finding;
 use crate::world::World;
 use coeff_io::Quality;
 use glam::{Mat3, Vec3};
@@ -79,6 +79,14 @@ impl<'a> Gatherer<'a> {
         quality: Quality,
     ) -> Self {
         Self { world, bank, bands, quality, visibility: true, hits: false, permanent: 0, worth: 0.0, mirrors: None }
+    }
+}
+
+impl Gathered {
+    /// What this tells of where the receiver stands.
+    pub(crate) fn finding(&self) -> Finding {
+        let &Self { openness, inside_share, behind_share, .. } = self;
+        Finding { openness, inside_share, behind_share }
     }
 }
 
@@ -323,8 +331,7 @@ impl Gatherer<'_> {
         let mut weighed: Vec<(Hit, Vec3)> =
             found.iter().map(|(_, hit, weight)| (*hit, self.world.sent(hit) * *weight)).collect();
         weighed.iter_mut().zip(&blockers.filters).for_each(|((_, reflected), filter)| *reflected *= *filter);
-        let covered = is_inside(out.openness, out.inside_share) || is_hidden(out.openness, out.behind_share);
-        if index < self.permanent && !covered {
+        if index < self.permanent && !out.finding().is_covered() {
             out.near = near_points(self.world, &weighed, self.worth);
         }
         out.hits.extend(weighed.iter().map(|(hit, reflected)| packed(self.world, hit, *reflected, &out.near)));

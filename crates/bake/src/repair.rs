@@ -18,7 +18,7 @@ pub(crate) struct Repair {
     pub(crate) counts: RepairCounts,
 }
 
-/// What the first pass found out about a receiver.
+/// What a look from a receiver tells of where it stands.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Finding {
     pub(crate) openness: f32,
@@ -35,6 +35,11 @@ impl Finding {
     /// Whether the receiver stands inside a body.
     pub(crate) fn is_inside(self) -> bool {
         is_inside(self.openness, self.inside_share)
+    }
+
+    /// Whether either is so: no view shows the receiver.
+    pub(crate) fn is_covered(self) -> bool {
+        self.is_inside() || self.is_hidden()
     }
 }
 
@@ -54,7 +59,7 @@ const BEHIND_TEXEL: f32 = 0.5;
 
 /// Whether a point of this open share, which meets backs of surfaces with one side in this share of its blocked directions, lies in the dark
 /// under a shell that is drawn from its other side alone: no view shows it.
-pub(crate) fn is_hidden(openness: f32, behind_share: f32) -> bool {
+fn is_hidden(openness: f32, behind_share: f32) -> bool {
     openness < HIDDEN && behind_share > BEHIND
 }
 
@@ -75,12 +80,11 @@ pub(crate) fn emerge(
     receivers: &Receivers,
     findings: &[Finding],
 ) -> Vec<(u32, Vec3)> {
-    let is_covered = |finding: &Finding| finding.is_inside() || finding.is_hidden();
-    if !findings.iter().any(is_covered) {
+    if !findings.iter().any(|finding| finding.is_covered()) {
         return Vec::new();
     }
     let neighbours = Neighbours::of(scene, receivers);
-    let stuck = |id: u32| is_covered(&findings[id as usize]) || !receivers.list[id as usize].sound;
+    let stuck = |id: u32| findings[id as usize].is_covered() || !receivers.list[id as usize].sound;
     let way_out = |id: u32| {
         let sound = neighbours.around(id).iter().copied().filter(|&n| !stuck(n));
         let to = &receivers.list[id as usize];
@@ -94,7 +98,7 @@ pub(crate) fn emerge(
         let home = receivers.list[id as usize].vertex;
         points.min_by(|a, b| a.distance_squared(home).total_cmp(&b.distance_squared(home)))
     };
-    let ids: Vec<u32> = (0..).zip(findings).filter(|(_, finding)| is_covered(finding)).map(|(id, _)| id).collect();
+    let ids: Vec<u32> = (0..).zip(findings).filter(|(_, finding)| finding.is_covered()).map(|(id, _)| id).collect();
     ids.into_par_iter().filter_map(|id| way_out(id).map(|point| (id, point))).collect()
 }
 
