@@ -9,6 +9,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::morton::morton_encode_u64;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use obvhs::splits::split_aabbs_preset;
 use obvhs::triangle::Triangle;
@@ -98,17 +99,12 @@ fn along_curve(boxes: &[Aabb]) -> Vec<usize> {
         .iter()
         .enumerate()
         .map(|(index, one)| {
-            let cell = ((one.center() - all.min).as_dvec3() * scale).to_array();
-            (cell.iter().enumerate().map(|(axis, &x)| spread(x as u64) << axis).sum(), index)
+            let [x, y, z] = ((one.center() - all.min).as_dvec3() * scale).to_array().map(|x| x as u32);
+            (morton_encode_u64(x, y, z), index)
         })
         .collect();
     keyed.sort_unstable();
     keyed.into_iter().map(|(_, index)| index).collect()
-}
-
-/// Spreads 21 bits so that two zero bits follow each.
-fn spread(bits: u64) -> u64 {
-    (0..21).map(|k| (bits >> k & 1) << (3 * k)).sum()
 }
 
 /// Cuts the boxes in two where that is cheapest, across any axis, and the parts in turn, until so few are left that they pair soon.
