@@ -272,11 +272,14 @@ pub(crate) fn receiver(done: &Done<'_>, texel: &Texel) -> Receiver {
 
 /// The point of a sheet that a texel stands for, in texels, where that is not its middle.
 pub(crate) fn aside(done: &Done<'_>, texel: &Texel, sheet: &SheetSettings) -> Option<Vec2> {
+    if texel.is_middle {
+        return None;
+    }
     let mesh = &done.scene.meshes[texel.mesh as usize];
     let corners = mesh.triangles[texel.triangle as usize].map(|vertex| mesh.uv1[vertex as usize]);
     let [a, b, c] = corners.map(|uv| uv * Vec2::new(sheet.width as f32, sheet.height as f32));
     let [u, v] = texel.barycentrics;
-    (!texel.is_middle).then(|| a + u * (b - a) + v * (c - a))
+    Some(a + u * (b - a) + v * (c - a))
 }
 
 /// How large a texel is on its surface: the side of a square.

@@ -16,9 +16,8 @@ use crate::towards::{most_triangles, towards, triangles};
 use crate::world::World;
 use crate::{Error, ProgressFn, settings};
 use coeff_io::{Effect, Refine, Settings};
-use glam::Vec3;
 use rayon::prelude::*;
-use scene::{Mesh, Scene};
+use scene::{Bounds, Mesh, Scene};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 
@@ -71,10 +70,8 @@ pub(crate) fn refined<'a>(
 
 /// Largest extent of the vertices, metres; what is not finite does not count.
 fn size(scene: &Scene) -> f32 {
-    let finite = || scene.meshes.iter().flat_map(|mesh| &mesh.positions).filter(|p| p.is_finite());
-    let low = finite().fold(Vec3::INFINITY, |low, p| low.min(*p));
-    let high = finite().fold(Vec3::NEG_INFINITY, |high, p| high.max(*p));
-    (high - low).max_element()
+    let positions = scene.meshes.iter().flat_map(|mesh| &mesh.positions).copied();
+    Bounds::of(positions.filter(|p| p.is_finite())).map_or(0.0, |bounds| bounds.size().max_element())
 }
 
 /// [`refine`] that reports progress and can be cancelled.

@@ -10,7 +10,7 @@ use crate::transmittance::Translucent;
 use glam::Vec3;
 use raytrace::{Hit, Ray, Tracer};
 use sampling::frame::Frame;
-use scene::{AlphaMode, Mesh, Scene};
+use scene::{AlphaMode, Material, Mesh, Scene};
 use sh_math::brdf::{DIELECTRIC, MEAN_DIFFUSE_LOSS, mean_environment_brdf};
 
 /// Bits 30 and 31 of a packed triangle say what was hit of it.
@@ -183,7 +183,7 @@ impl<'a> World<'a> {
     /// Whether the surface is there at a point of a masked triangle.
     pub(crate) fn solid(&self, triangle: u32, u: f32, v: f32) -> bool {
         let (mesh, local) = self.locate(triangle);
-        match self.scene.materials[self.scene.meshes[mesh].material as usize].alpha {
+        match self.scene.material(mesh).alpha {
             AlphaMode::Mask(cutoff) => self.scene.coverage(mesh, local, u, v) >= cutoff,
             AlphaMode::Opaque | AlphaMode::Blend => true,
         }
@@ -205,7 +205,7 @@ impl<'a> World<'a> {
 
     /// Whether a triangle is opaque and has one side, so that its back may be the inside of a body.
     pub(crate) fn is_one_sided(&self, triangle: u32) -> bool {
-        let material = &self.scene.materials[self.scene.meshes[self.locate(triangle).0].material as usize];
+        let material = self.material(triangle);
         material.alpha == AlphaMode::Opaque && material.transmission <= 0.0 && !material.double_sided
     }
 
@@ -237,13 +237,16 @@ impl<'a> World<'a> {
 
     /// Whether the back of a traced triangle is drawn too.
     pub(crate) fn is_two_sided(&self, triangle: u32) -> bool {
-        self.scene.materials[self.scene.meshes[self.locate(triangle).0].material as usize].double_sided
+        self.material(triangle).double_sided
     }
 
     /// Whether a mask cuts holes into a traced triangle's surface.
     pub(crate) fn has_holes(&self, triangle: u32) -> bool {
-        let material = self.scene.meshes[self.locate(triangle).0].material as usize;
-        matches!(self.scene.materials[material].alpha, AlphaMode::Mask(_))
+        matches!(self.material(triangle).alpha, AlphaMode::Mask(_))
+    }
+
+    fn material(&self, triangle: u32) -> &Material {
+        self.scene.material(self.locate(triangle).0)
     }
 
     /// Share of the light at a hit that the surface sends on to all sides, linear: its albedo; where it shines less what its mirror takes, and

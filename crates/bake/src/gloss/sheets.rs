@@ -106,9 +106,8 @@ pub(crate) fn bake(
 /// Whether the texels of a sheet need what arrives for one normal alone, that of the surface: they take it as vertices do, with the cosine exact.
 /// In few bands it would err most where little is open.
 fn is_at_normals(done: &Done<'_>, settings: &TextureSettings, plan: &SheetPlan) -> bool {
-    let materials = plan.settings.meshes.iter().map(|&mesh| done.scene.meshes[mesh].material);
-    let is_bent = |material: u32| settings.bent && done.scene.materials[material as usize].normal_texture.is_some();
-    plan.layout.len() == plan.layout.diffuse && !materials.into_iter().any(is_bent)
+    let is_bent = |&mesh: &usize| settings.bent && done.scene.material(mesh).normal_texture.is_some();
+    plan.layout.len() == plan.layout.diffuse && !plan.settings.meshes.iter().any(is_bent)
 }
 
 /// What arrives at the texels of one sheet, those mended that are inside of bodies or hidden.
