@@ -1,8 +1,12 @@
 //! A room that is closed but for a window with blinds: no receiver is black that paths find lit.
 
+#[path = "../../crates/bake/tests/support/rectangle.rs"]
+mod rectangle;
+
 use bake::Receivers;
 use coeff_io::{Bounces, Quality, Settings};
 use glam::{Quat, Vec3, Vec4};
+use rectangle::rectangle;
 use reference::{Light, World, radiance_at};
 use scene::{Material, Mesh, Scene};
 use std::ops::ControlFlow;
@@ -18,19 +22,6 @@ const LIT: f32 = 0.05;
 const COMPARED: (usize, u32) = (600, 512);
 /// Bound of the mean difference over receivers, as a share of the mean radiance; the noise of the paths is 0.04 of it.
 const AGREE: f32 = 0.08;
-
-/// A rectangle from a corner along two sides, seen from where their cross product points.
-fn rectangle(corner: Vec3, along: Vec3, across: Vec3, [columns, rows]: [u32; 2]) -> Mesh {
-    let n = columns + 1;
-    let at = |i: u32| corner + along * ((i % n) as f32 / columns as f32) + across * ((i / n) as f32 / rows as f32);
-    let quads = (0..columns * rows).map(|k| (k % columns) + (k / columns) * n);
-    Mesh {
-        positions: (0..n * (rows + 1)).map(at).collect(),
-        normals: vec![along.cross(across).normalize(); (n * (rows + 1)) as usize],
-        triangles: quads.flat_map(|a| [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]).collect(),
-        ..Mesh::default()
-    }
-}
 
 /// The walls, seen from inside, with a hole for the window.
 fn room() -> Vec<Mesh> {

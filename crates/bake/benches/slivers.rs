@@ -4,15 +4,15 @@
 //! default, for a number of triangles and twice as many.
 #![expect(clippy::print_stdout, reason = "a bench shows its figures")]
 
+#[path = "../tests/support/grounds.rs"]
+mod grounds;
+
 use bake::settings;
 use coeff_io::{Bounces, Quality, Settings};
 use glam::{Vec3, vec3};
+use grounds::{Kind, compact, disc, polygon, star};
 use scene::{Material, Mesh, Scene};
-use std::f32::consts::TAU;
 use std::ops::ControlFlow;
-
-/// Ground by its number of triangles.
-type Kind = (&'static str, fn(u32) -> Mesh);
 
 fn main() {
     println!("| ground | slivers | receivers | user s | twice: receivers | user s |");
@@ -64,42 +64,10 @@ fn posts() -> Mesh {
     mesh
 }
 
-fn rim(n: u32, radius: impl Fn(u32) -> f32) -> Vec<Vec3> {
-    let at = |k: u32| (radius(k), k as f32 / n as f32 * TAU);
-    (0..n).map(at).map(|(r, a)| vec3(r * a.sin(), 0.0, r * a.cos())).collect()
-}
-
-fn around_middle(mut positions: Vec<Vec3>) -> Mesh {
-    let n = positions.len() as u32;
-    positions.push(Vec3::ZERO);
-    Mesh { positions, triangles: (0..n).map(|k| [n, k, (k + 1) % n]).collect(), ..Mesh::default() }
-}
-
-fn disc(n: u32) -> Mesh {
-    around_middle(rim(n, |_| 3.0))
-}
-
-fn star(n: u32) -> Mesh {
-    around_middle(rim(n, |k| if k % 2 == 0 { 3.0 } else { 2.1 }))
-}
-
-/// A convex n-gon, cut from one of its corners.
-fn polygon(n: u32) -> Mesh {
-    Mesh { positions: rim(n, |_| 3.0), triangles: (1..n - 1).map(|k| [0, k, k + 1]).collect(), ..Mesh::default() }
-}
-
 /// Long teeth side by side.
 fn comb(n: u32) -> Mesh {
     let x = |k: u32| 8.0 * k as f32 / n as f32 - 4.0;
     let positions = (0..n).flat_map(|k| [vec3(x(k), 0.0, -1.0), vec3(x(k + 1), 0.0, -1.0), vec3(x(k), 0.0, 1.0)]);
     let triangles = (0..n).map(|k| [3 * k, 3 * k + 2, 3 * k + 1]).collect();
     Mesh { positions: positions.collect(), triangles, ..Mesh::default() }
-}
-
-fn compact(n: u32) -> Mesh {
-    let side = (n as f32 / 2.0).sqrt() as u32;
-    let (at, m) = (|k: u32| 6.0 * k as f32 / side as f32 - 3.0, side + 1);
-    let cells = (0..side * side).map(|k| k % side + k / side * m);
-    let triangles = cells.flat_map(|i| [[i, i + m, i + 1], [i + 1, i + m, i + m + 1]]).collect();
-    Mesh { positions: (0..m * m).map(|k| vec3(at(k % m), 0.0, at(k / m))).collect(), triangles, ..Mesh::default() }
 }

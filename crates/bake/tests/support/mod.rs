@@ -1,12 +1,16 @@
 //! What the tests of the baker share: grey scenes, quiet bakes, radiance under a white sky.
-#![allow(dead_code, reason = "each test file uses a part")]
+#![allow(dead_code, unused_imports, reason = "each test file uses a part")]
 
+pub(crate) mod grounds;
+mod rectangle;
 pub(crate) mod volume;
+
+pub(crate) use rectangle::rectangle;
 
 use bake::settings;
 use coeff_io::{Bounces, Prt, Quality, Refine, Sampler, Settings};
-use glam::{Vec3, Vec4};
-use scene::{Mesh, Scene};
+use glam::Vec4;
+use scene::Scene;
 use std::ops::ControlFlow;
 
 /// A builtin scene with every surface grey, of albedo `a`.
@@ -52,19 +56,6 @@ pub(crate) fn under_white(prt: &Prt) -> Vec<f64> {
 pub(crate) fn worst(values: &[f64], expected: f64) -> (f64, usize) {
     let differences = values.iter().map(|v| (v - expected).abs());
     differences.enumerate().map(|(i, d)| (d, i)).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })
-}
-
-/// A rectangle of quads from a corner along two sides, seen from where their cross product points.
-pub(crate) fn rectangle(corner: Vec3, along: Vec3, across: Vec3, [columns, rows]: [u32; 2]) -> Mesh {
-    let n = columns + 1;
-    let at = |i: u32| corner + along * ((i % n) as f32 / columns as f32) + across * ((i / n) as f32 / rows as f32);
-    let quads = (0..columns * rows).map(|k| (k % columns) + (k / columns) * n);
-    Mesh {
-        positions: (0..n * (rows + 1)).map(at).collect(),
-        normals: vec![along.cross(across).normalize(); (n * (rows + 1)) as usize],
-        triangles: quads.flat_map(|a| [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]).collect(),
-        ..Mesh::default()
-    }
 }
 
 /// Radiance as it is drawn at a point of the plane z = 0: between the corners of its triangle.
