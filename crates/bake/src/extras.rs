@@ -1,6 +1,6 @@
 //! What is baked beside the transfer of the vertices, from the same light between surfaces.
 
-use crate::arrival::{Arrivals, Sent, Setting, Shape, Shine};
+use crate::arrival::{Arrivals, Sent, Setting, Shine};
 use crate::directions::DirectionBank;
 use crate::domain::{Domain, Judge};
 use crate::field::Field;
@@ -184,27 +184,32 @@ impl Done<'_> {
         if sum > 0.0 && brightest > 0.0 { lit.map(|share| share / sum) } else { shares }
     }
 
-    /// Writes what the vertices around a texel take, as irradiance / pi that is the same for every normal, by `[function][depth][channel]`.
-    pub(crate) fn add_from_vertices(&self, texel: &Texel, shape: Shape, row: &mut [f32]) {
+    /// Adds what the vertices around a texel take, times a factor, by `[coefficient of the light][channel]`: under a fixed light one number for
+    /// each channel.
+    pub(crate) fn add_from_vertices(
+        &self,
+        texel: &Texel,
+        light: Option<&[[f32; 3]]>,
+        (factor, channels): (f32, usize),
+        row: &mut [f32],
+    ) {
         let first: usize = self.scene.meshes[..texel.mesh as usize].iter().map(|mesh| mesh.positions.len()).sum();
         let corners = self.scene.meshes[texel.mesh as usize].triangles[texel.triangle as usize];
         let [u, v] = texel.barycentrics;
-        // The first function is 1 / sqrt(4 pi) everywhere.
-        let constant = (4.0 * std::f32::consts::PI).sqrt();
         let vertices = corners.map(|corner| first as u32 + corner);
         let shares = self.shares_of_lit(vertices, [1.0 - u - v, u, v]);
         for (vertex, share) in vertices.into_iter().zip(shares) {
-            for channel in 0..shape.channels {
+            for channel in 0..channels {
                 let own = channel.min(self.transfer.channels - 1);
                 let transfer = self.transfer.channel(vertex, own);
-                match self.light {
+                match light {
                     Some(light) => {
-                        let lit: f32 = transfer.iter().zip(&light.coefficients).map(|(t, l)| t * l[channel]).sum();
-                        row[channel] += constant * share * lit;
+                        let lit: f32 = transfer.iter().zip(light).map(|(t, l)| t * l[channel]).sum();
+                        row[channel] += factor * share * lit;
                     }
                     None => {
-                        let out = row[channel..shape.depth * shape.channels].iter_mut().step_by(shape.channels);
-                        out.zip(transfer).for_each(|(sum, t)| *sum += constant * share * t);
+                        let out = row.iter_mut().skip(channel).step_by(channels);
+                        out.zip(transfer).for_each(|(sum, t)| *sum += factor * share * t);
                     }
                 }
             }

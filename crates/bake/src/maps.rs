@@ -106,24 +106,21 @@ impl Gathered {
     /// Gives texels whose chart has nothing to mend them with what the vertices around them take, the same for every normal. Returns how
     /// many there are.
     fn fill_from_vertices(&mut self, done: &Done<'_>, shape: Shape) -> usize {
-        let mut filled = 0;
-        for texel in std::mem::take(&mut self.inside) {
-            let place = texel.row as usize * self.plate.width + texel.column as usize;
-            if self.plate.slot_of[place] != plate::NONE {
-                continue;
-            }
-            let slot = self.plate.add_slot(place, self.plate.owner[place]);
-            self.plate.unseen.push(slot);
-            self.plate.model_of[slot as usize] = self.frames.len() as u32;
+        // The first function is 1 / sqrt(4 pi) everywhere.
+        let constant = (4.0 * std::f32::consts::PI).sqrt();
+        let first_frame = self.frames.len() as u32;
+        let filled = hidden::fill(&mut self.plate, &self.inside, |texel, _| {
             let mesh = &done.scene.meshes[texel.mesh as usize];
-            let normal = receiver(done, &texel).normal;
+            let normal = receiver(done, texel).normal;
             self.frames.push(TangentFrame::at(mesh, texel.triangle as usize, texel.barycentrics, normal));
-            let start = self.plate.values.len();
-            self.plate.values.resize(start + shape.len(), 0.0);
-            done.add_from_vertices(&texel, shape, &mut self.plate.values[start..]);
-            filled += 1;
-        }
-        filled
+            let mut row = vec![0.0; shape.len()];
+            let of_first = &mut row[..shape.depth * shape.channels];
+            done.add_from_vertices(texel, done.fixed_light(), (constant, shape.channels), of_first);
+            row
+        });
+        let frames = first_frame..;
+        filled.clone().zip(frames).for_each(|(slot, frame)| self.plate.model_of[slot as usize] = frame);
+        filled.len()
     }
 }
 

@@ -243,7 +243,7 @@ pub(crate) fn gloss_text(gloss: &coeff_io::GlossRecord, quality: Quality) -> Str
     }
     for (count, what) in [
         (gloss.inside, "texels inside of bodies"),
-        (gloss.unfilled, "of them with nothing to fill them but the vertices"),
+        (gloss.unfilled, "with a chart of nothing else, taken from the vertices"),
     ] {
         if count > 0 {
             text.push_str(&format!("; {count} {what}"));

@@ -7,7 +7,7 @@ use crate::arrival::{Arrival, Arrivals};
 use crate::error::Error;
 use crate::extras::Done;
 use crate::maps::hidden::{self, Hidden, is_hidden};
-use crate::maps::plate::{NONE, Plate};
+use crate::maps::plate::Plate;
 use crate::maps::{SheetSettings, arrive_as, aside, extent, read_back, receiver, stitch_all};
 use crate::progress::Stage;
 use crate::receivers::Receiver;
@@ -82,7 +82,6 @@ pub(crate) fn bake(
             if is_at_normals(done, settings, plan) { (&at_normals, &plain) } else { (arrivals, maker) };
         let mut plate = gather(done, arrivals, maker, settings, plan, first_index, told)?;
         first_index = first_index.wrapping_add(plan.settings.width * plan.settings.height);
-        record.unfilled += fill_from_vertices(done, maker, plan, &mut plate) as u64;
         (0..settings.dilation.min(1)).for_each(|_| plate.dilate());
         if settings.stitch {
             read_back(&mut plate);
@@ -154,11 +153,8 @@ fn gather(
         plate.values.extend(kept.row);
         errors.push(kept.error);
     }
-    for one in hidden::mend(&mut plate, hidden) {
-        let slot = plate.add_slot(one.place, plate.owner[one.place]);
-        plate.unseen.push(slot);
-        plate.values.extend(one.row);
-    }
+    let hidden = hidden::mend(&mut plate, hidden);
+    record.unfilled += fill_from_vertices(done, maker, plan, hidden, &mut plate) as u64;
     Ok(plate)
 }
 
@@ -193,34 +189,24 @@ fn charts(done: &Done<'_>, sheet: &SheetSettings) -> impl Fn(&Texel) -> u32 + us
     }
 }
 
-/// Gives texels whose chart has nothing to mend them with the diffuse transfer of the vertices around them. Returns how many there are.
-fn fill_from_vertices(done: &Done<'_>, maker: &RowMaker<'_>, plan: &SheetPlan, plate: &mut Plate) -> usize {
-    let mut filled = 0;
-    for texel in &plan.texels {
-        let place = texel.row as usize * plate.width + texel.column as usize;
-        if plate.slot_of[place] != NONE {
-            continue;
-        }
-        plate.add_slot(place, plate.owner[place]);
-        let start = plate.values.len();
-        plate.values.resize(start + plan.layout.len(), 0.0);
-        add_vertices(done, maker, texel, &mut plate.values[start..start + plan.layout.diffuse]);
-        filled += 1;
-    }
-    filled
-}
-
-fn add_vertices(done: &Done<'_>, maker: &RowMaker<'_>, texel: &Texel, row: &mut [f32]) {
-    let first: usize = done.scene.meshes[..texel.mesh as usize].iter().map(|mesh| mesh.positions.len()).sum();
-    let corners = done.scene.meshes[texel.mesh as usize].triangles[texel.triangle as usize];
-    let [u, v] = texel.barycentrics;
-    for (corner, share) in corners.into_iter().zip([1.0 - u - v, u, v]) {
-        for channel in 0..maker.channels {
-            let from = done.transfer.channel(first as u32 + corner, channel.min(done.transfer.channels - 1));
-            let out = row.iter_mut().skip(channel).step_by(maker.channels);
-            out.zip(from).for_each(|(sum, t)| *sum += share * t);
-        }
-    }
+/// Gives texels whose chart has nothing to mend them with the diffuse transfer of the vertices around them; the rest of what hidden ones keep
+/// is their own. Returns how many there are.
+fn fill_from_vertices(
+    done: &Done<'_>,
+    maker: &RowMaker<'_>,
+    plan: &SheetPlan,
+    hidden: Vec<Hidden>,
+    plate: &mut Plate,
+) -> usize {
+    let mut own: BTreeMap<usize, Vec<f32>> = hidden.into_iter().map(|one| (one.place, one.row)).collect();
+    let row = |texel: &Texel, place: usize| {
+        let mut row = own.remove(&place).unwrap_or_else(|| vec![0.0; plan.layout.len()]);
+        let diffuse = &mut row[..plan.layout.diffuse];
+        diffuse.fill(0.0);
+        done.add_from_vertices(texel, None, (1.0, maker.channels), diffuse);
+        row
+    };
+    hidden::fill(plate, &plan.texels, row).len()
 }
 
 /// Makes both sides of seams agree, sheets of one layout among each other.

@@ -6,6 +6,8 @@
 use super::plate::{NONE, Plate};
 use crate::arrival::Arrival;
 use crate::repair;
+use scene::lightmap::Texel;
+use std::ops::Range;
 
 /// Texels from one that is seen up to which filters read.
 const READ: usize = 2;
@@ -38,6 +40,21 @@ pub(crate) fn mend(plate: &mut Plate, hidden: Vec<Hidden>) -> Vec<Hidden> {
         }
     }
     empty
+}
+
+/// Gives texels whose chart has nothing to mend them with rows of their own, made from the vertices around them. Returns the slots.
+pub(crate) fn fill(plate: &mut Plate, texels: &[Texel], mut row: impl FnMut(&Texel, usize) -> Vec<f32>) -> Range<u32> {
+    let first = plate.slots() as u32;
+    for texel in texels {
+        let place = texel.row as usize * plate.width + texel.column as usize;
+        if plate.slot_of[place] == NONE {
+            plate.add_slot(place, plate.owner[place]);
+            plate.values.extend(row(texel, place));
+        }
+    }
+    let filled = first..plate.slots() as u32;
+    plate.unseen.extend(filled.clone());
+    filled
 }
 
 /// Whether a texel of its chart that is seen lies so near that filters read both.
