@@ -4,13 +4,14 @@
 //! light, and another beside it, in the shade of an arch: one value cannot serve both, so each gets a vertex of its own. So does what comes out
 //! between two bodies (a wall between a window frame and the awning above it): no vertex inside either tells how dark it is there.
 
+use crate::cuts::Cuts;
 use crate::directions::DirectionBank;
 use crate::gather::{Gatherer, Worker};
 use crate::ledge::{self, sent_to};
 use crate::passes::Monitor;
 use crate::receivers::{FaceSums, Receiver};
 use crate::repair::entry;
-use crate::split::{Edge, EdgePlace as Place, cut, edge_place as place, edges, place_of, sorted};
+use crate::split::{Edge, edges, sorted};
 use crate::world::World;
 use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
@@ -18,7 +19,7 @@ use rayon::prelude::*;
 use scene::{Mesh, Scene};
 use sh_math::Bands;
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Bands and rays of the look from an exit, as those that find bends.
 const BANDS: u32 = 3;
@@ -29,8 +30,6 @@ const DIFFERENT: f32 = 0.15;
 const DIM: f32 = 0.05;
 /// Shortest part of an edge between two bodies that gets a vertex, over the edge.
 const LEAST: f32 = 1.0 / 32.0;
-/// Shares along an edge are multiples of this: theirs and what is left of 1 are exact.
-const STEPS: f32 = 4096.0;
 
 /// What is looked for.
 #[derive(Clone, Copy)]
@@ -40,9 +39,6 @@ enum Look {
     /// Where edges come out to differing sights.
     Exits,
 }
-
-/// Where an edge is cut: its ends by position, and the share of the way from the first.
-type Cuts = HashMap<Place, f32>;
 
 /// The scene with its edges cut at exits of bodies where that matters; `world` holds the same surfaces.
 pub(crate) fn cut_at_exits<'a>(
@@ -66,7 +62,7 @@ pub(crate) fn cut_at_exits<'a>(
     }
     // First what comes out between two bodies: to the vertices inside them that is one more way out.
     for look in [Look::Gaps, Look::Exits] {
-        let mut cuts = Cuts::new();
+        let mut cuts = Cuts::default();
         for (mesh, inside) in scene.meshes.iter().zip(&mut inside) {
             inside.resize(mesh.positions.len(), false);
             match look {
@@ -76,12 +72,7 @@ pub(crate) fn cut_at_exits<'a>(
             monitor.check()?;
         }
         if !cuts.is_empty() {
-            for mesh in &mut scene.to_mut().meshes {
-                cut(mesh, |mesh, edge| {
-                    let share = *cuts.get(&place(mesh, edge))?;
-                    Some(turned(mesh, edge, share))
-                });
-            }
+            cuts.apply(scene.to_mut());
         }
     }
     Ok(scene)
@@ -114,7 +105,7 @@ fn add_gaps(mesh: &Mesh, inside: &[bool], gatherer: &Gatherer<'_>, cuts: &mut Cu
         })
         .collect();
     ways.into_iter().zip(found).filter_map(|(edge, share)| Some((edge, share?))).for_each(|(edge, share)| {
-        add_cut(mesh, edge, share, cuts);
+        cuts.add(mesh, edge, share);
     });
 }
 
@@ -159,19 +150,7 @@ fn add_exits(mesh: &Mesh, inside: &[bool], (gatherer, bounces): (&Gatherer<'_>, 
                 .collect()
         })
         .collect();
-    found.into_iter().flatten().for_each(|(edge, share)| add_cut(mesh, edge, share, cuts));
-}
-
-/// Notes that an edge is cut at a share of the way from its first vertex.
-fn add_cut(mesh: &Mesh, edge: Edge, share: f32, cuts: &mut Cuts) {
-    let share = (share * STEPS).round().clamp(1.0, STEPS - 1.0) / STEPS;
-    cuts.entry(place(mesh, edge)).or_insert(turned(mesh, edge, share));
-}
-
-/// A share of the way along an edge as its place counts it, which has the ends in an order of its own; and back.
-fn turned(mesh: &Mesh, edge: Edge, share: f32) -> f32 {
-    let [a, b] = edge.map(|v| place_of(mesh.positions[v as usize]));
-    if a <= b { share } else { 1.0 - share }
+    found.into_iter().flatten().for_each(|(edge, share)| cuts.add(mesh, edge, share));
 }
 
 /// Whether a receiver stands inside a body: three rays rule out most.
@@ -217,22 +196,4 @@ fn norm(look: impl Iterator<Item = f32>) -> f32 {
 fn apart(looks: &[Vec<f32>]) -> f32 {
     let from_first = |look: &Vec<f32>| norm(look.iter().zip(&looks[0]).map(|(a, b)| a - b));
     looks.iter().map(from_first).fold(0.0, f32::max)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::Vec3;
-
-    /// Meshes that share an edge cut it at the same place, also where one has -0 for 0 and has the ends the other way round.
-    #[test]
-    fn an_edge_is_cut_at_one_place() {
-        let mesh = |x: f32| Mesh { positions: vec![Vec3::new(x, 0.0, 0.0), Vec3::X], ..Mesh::default() };
-        assert_eq!(place(&mesh(0.0), [0, 1]), place(&mesh(-0.0), [1, 0]));
-        let shares = [0.0, -0.0].map(|x| turned(&mesh(x), [0, 1], 0.25));
-        assert_eq!(shares, [0.25; 2]);
-        assert_eq!(turned(&mesh(-0.0), [1, 0], 0.75), 0.25);
-        // Twin: by their bits the ends of the second would be the other way round.
-        assert!((-0.0f32).to_bits() > 1.0f32.to_bits());
-    }
 }

@@ -47,9 +47,13 @@ fn fades_from(
     if far.is_some_and(|far| far.triangle == near.triangle) {
         return false;
     }
-    let mut sent = |hit: Hit| Sent::by(gatherer, &hit, worker);
-    let (near, far) = (sent(near), far.map(sent).unwrap_or_default());
-    near.distance(&far) > DIFFERENT * gatherer.bank.open_norm as f32
+    differ(gatherer, [Some(near), far], DIFFERENT, worker)
+}
+
+/// Whether what two surfaces send on of light of the sky, where rays met them, differs by more than `least` of an open receiver's light.
+pub(crate) fn differ(gatherer: &Gatherer<'_>, hits: [Option<Hit>; 2], least: f32, worker: &mut Worker) -> bool {
+    let [a, b] = hits.map(|hit| hit.map(|hit| Sent::by(gatherer, &hit, worker)).unwrap_or_default());
+    a.distance(&b) > least * gatherer.bank.open_norm as f32
 }
 
 /// What surfaces send to a receiver of the light that falls on them straight, `[channel of 3][coefficient]`.

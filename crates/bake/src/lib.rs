@@ -18,6 +18,8 @@ mod bodies;
 mod bundle;
 mod cells;
 pub mod compress;
+mod contacts;
+mod cuts;
 mod directions;
 mod domain;
 mod dot;

@@ -1,6 +1,7 @@
 //! Splits large triangles, since a vertex is all that can hold a shadow.
 
 use crate::bend::Bends;
+use crate::contacts::cut_at_contacts;
 use crate::exits::cut_at_exits;
 use crate::facts::Facts;
 use crate::junctions::joined;
@@ -105,7 +106,8 @@ pub fn refine_watched<'a>(
             let (refined, small) = towards(evenly(joined, longest)?, Proximity::new(small))?;
             let bends = Bends::new(&world, &refined, settings);
             let split = at_bends(refined, longest, &small, bends, &monitor)?;
-            cut_at_exits(split, &world, settings, &monitor)
+            let split = cut_at_exits(split, &world, settings, &monitor)?;
+            cut_at_contacts(split, &world, (settings, longest * 0.5f32.powi(BEND_ROUNDS)), &monitor)
         }
     }
 }
