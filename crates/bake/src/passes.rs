@@ -6,6 +6,7 @@ use crate::progress::{Progress, Stage};
 use crate::receivers::{Receivers, morton_order};
 use crate::reflected::add_reflected;
 use crate::senders::{Senders, fill_row};
+use crate::wanted::is_wanted;
 use crate::world::World;
 use crate::{Error, ProgressFn};
 use rayon::prelude::*;
@@ -102,7 +103,14 @@ impl Chunk {
     }
 }
 
-/// What the first pass hands on, receiver by receiver.
+/// Forgets what a receiver sees but for what may want receivers of its own: the whole of a block takes more memory than its senders.
+fn keep_wanted(world: &World<'_>, result: &mut Gathered) {
+    result.hits.retain(|hit| is_wanted(world, hit));
+    result.hits.shrink_to_fit();
+    result.late = Vec::new();
+}
+
+/// What the first pass hands on, receiver by receiver: of what it sees what [`Wanted::note`](crate::wanted::Wanted::note) asks for.
 pub(crate) type Sink<'s> = dyn FnMut(u32, &Gathered) + 's;
 
 /// Gathers for the given receivers; what they see is kept for the bounces while `room`, in bytes, lasts.
@@ -134,6 +142,7 @@ pub(crate) fn gather_pass(
                     results[k] = result;
                 }
                 let senders = keep.then(|| Kept::of(gatherer.world, &results));
+                results.iter_mut().for_each(|result| keep_wanted(gatherer.world, result));
                 (Chunk { ids: ids.to_vec(), senders }, results)
             })
             .collect();

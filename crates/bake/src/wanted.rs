@@ -69,6 +69,12 @@ impl Wanted {
     }
 }
 
+/// Whether what a receiver sees can want a receiver of its own: the back of a surface, or a cell.
+pub(crate) fn is_wanted(world: &World<'_>, hit: &PackedHit) -> bool {
+    let on_cell = |triangle| world.cells.at(triangle, hit.barycentrics).is_some();
+    hit.is_back || matches!(hit.source, Source::Triangle(triangle) if on_cell(triangle))
+}
+
 /// Share of a receiver's light that the backs it sees send on at most.
 fn back_share(hits: &[PackedHit]) -> f32 {
     let backs = hits.iter().filter(|hit| hit.is_back);
