@@ -3,6 +3,10 @@
 
 /// Most steps of the QL iteration for one eigenvalue.
 const STEPS: usize = 64;
+/// Turns of two vectors that are kept before they are done.
+const TURNS: usize = 1 << 14;
+/// Components of all vectors that are turned together: those of a few hundred vectors stay near the processor.
+const TOGETHER: usize = 8;
 
 /// Eigenvalues, the largest first, and their unit eigenvectors, `[vector][component]`, of a symmetric matrix of `n` rows.
 ///
@@ -84,6 +88,7 @@ fn tridiagonal(z: &mut [Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
 /// QL with implicit shifts; the columns of the transform become the eigenvectors, one after the other as they lie in memory.
 fn iterate(diagonal: &mut [f64], beside: &mut [f64], vectors: &mut [Vec<f64>]) {
     let n = diagonal.len();
+    let mut turns = Vec::new();
     beside.rotate_left(1);
     beside[n - 1] = 0.0;
     for l in 0..n {
@@ -115,18 +120,47 @@ fn iterate(diagonal: &mut [f64], beside: &mut [f64], vectors: &mut [Vec<f64>]) {
                 p = sine * r;
                 diagonal[i + 1] = g + p;
                 g = cosine * r - b;
-                let (before, after) = vectors.split_at_mut(i + 1);
-                for (x, y) in before[i].iter_mut().zip(&mut after[0]) {
-                    let (a, b) = (*x, *y);
-                    *y = sine * a + cosine * b;
-                    *x = cosine * a - sine * b;
-                }
+                turns.push(Turn { first: i, sine, cosine });
+            }
+            if turns.len() >= TURNS {
+                turn(vectors, &turns);
+                turns.clear();
             }
             if !broke {
                 diagonal[l] -= p;
                 beside[l] = g;
                 beside[end] = 0.0;
             }
+        }
+    }
+    turn(vectors, &turns);
+}
+
+/// A turn of a vector and the next within the plane of both.
+struct Turn {
+    first: usize,
+    sine: f64,
+    cosine: f64,
+}
+
+/// Does turns one after the other, a few components of all vectors at a time.
+fn turn(vectors: &mut [Vec<f64>], turns: &[Turn]) {
+    let n = vectors.len();
+    let mut parts = vec![[0.0; TOGETHER]; n];
+    for start in (0..n).step_by(TOGETHER) {
+        let count = TOGETHER.min(n - start);
+        for (part, vector) in parts.iter_mut().zip(&*vectors) {
+            part[..count].copy_from_slice(&vector[start..start + count]);
+        }
+        for &Turn { first, sine, cosine } in turns {
+            let (a, b) = (parts[first], parts[first + 1]);
+            for k in 0..TOGETHER {
+                parts[first + 1][k] = sine * a[k] + cosine * b[k];
+                parts[first][k] = cosine * a[k] - sine * b[k];
+            }
+        }
+        for (part, vector) in parts.iter().zip(&mut *vectors) {
+            vector[start..start + count].copy_from_slice(&part[..count]);
         }
     }
 }

@@ -40,6 +40,7 @@ pub(super) fn settle(rows: &[Agreement], slots: &[u32], stay: &[f32], row_len: u
     if rows.is_empty() {
         return;
     }
+    let rows = Matrix::of(rows);
     let solved: Vec<Vec<[f32; LANES]>> = (0..row_len.div_ceil(LANES))
         .into_par_iter()
         .map(|batch| {
@@ -48,7 +49,7 @@ pub(super) fn settle(rows: &[Agreement], slots: &[u32], stay: &[f32], row_len: u
                 if n < row_len { values[slot as usize * row_len + n] } else { 0.0 }
             };
             let before = slots.iter().map(|&slot| std::array::from_fn(|lane| number(slot, lane))).collect();
-            solve(rows, before, stay)
+            solve(&rows, before, stay)
         })
         .collect();
     for (batch, solved) in solved.into_iter().enumerate() {
@@ -59,17 +60,41 @@ pub(super) fn settle(rows: &[Agreement], slots: &[u32], stay: &[f32], row_len: u
     }
 }
 
+/// Agreements one after the other, with where each ends.
+struct Matrix {
+    entries: Vec<(u32, f32)>,
+    ends: Vec<usize>,
+}
+
+impl Matrix {
+    fn of(rows: &[Agreement]) -> Self {
+        let mut all = Self { entries: Vec::with_capacity(rows.iter().map(Vec::len).sum()), ends: Vec::new() };
+        for row in rows {
+            all.entries.extend_from_slice(row);
+            all.ends.push(all.entries.len());
+        }
+        all
+    }
+
+    fn rows(&self) -> impl Iterator<Item = &[(u32, f32)]> {
+        let mut start = 0;
+        self.ends.iter().map(move |&end| &self.entries[std::mem::replace(&mut start, end)..end])
+    }
+}
+
 /// Conjugate gradients for the change `d` of the first, with the weights mu in `stay`: `(A^T A + mu) d = -A^T A before`.
-fn solve(rows: &[Agreement], before: Vec<[f32; LANES]>, stay: &[f32]) -> Vec<[f32; LANES]> {
-    let mut residual = squared(rows, &before);
+fn solve(rows: &Matrix, before: Vec<[f32; LANES]>, stay: &[f32]) -> Vec<[f32; LANES]> {
+    let mut residual = vec![[0.0f32; LANES]; before.len()];
+    squared(rows, &before, &mut residual);
     residual[stay.len()..].fill([0.0; LANES]);
     residual.iter_mut().flatten().for_each(|value| *value = -*value);
     let mut change = vec![[0.0f32; LANES]; before.len()];
     let mut direction = residual.clone();
     let mut norm = dot(&residual, &residual);
     let first = norm;
+    let mut image = residual.clone();
     for _ in 0..STEPS {
-        let mut image = squared(rows, &direction);
+        squared(rows, &direction, &mut image);
         image[stay.len()..].fill([0.0; LANES]);
         for ((out, along), stay) in image.iter_mut().zip(&direction).zip(stay) {
             out.iter_mut().zip(along).for_each(|(out, along)| *out += stay * along);
@@ -101,18 +126,19 @@ fn ratio(a: f64, b: f64) -> f32 {
 }
 
 /// `A^T A x`.
-fn squared(rows: &[Agreement], x: &[[f32; LANES]]) -> Vec<[f32; LANES]> {
-    let mut out = vec![[0.0; LANES]; x.len()];
-    for row in rows {
+fn squared(rows: &Matrix, x: &[[f32; LANES]], out: &mut [[f32; LANES]]) {
+    out.fill([0.0; LANES]);
+    for row in rows.rows() {
         let mut sum = [0.0; LANES];
         for &(slot, weight) in row {
-            sum.iter_mut().zip(x[slot as usize]).for_each(|(sum, value)| *sum += weight * value);
+            let x = &x[slot as usize];
+            (0..LANES).for_each(|k| sum[k] += weight * x[k]);
         }
         for &(slot, weight) in row {
-            out[slot as usize].iter_mut().zip(sum).for_each(|(out, sum)| *out += weight * sum);
+            let out = &mut out[slot as usize];
+            (0..LANES).for_each(|k| out[k] += weight * sum[k]);
         }
     }
-    out
 }
 
 fn dot(a: &[[f32; LANES]], b: &[[f32; LANES]]) -> [f64; LANES] {
