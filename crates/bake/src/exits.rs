@@ -179,11 +179,10 @@ fn exits(
     }
     let open = gatherer.bank.open_norm as f32;
     let looks: Vec<Vec<f32>> = found.iter().map(|one| gatherer.direct(&one.2, 0, worker).0.transfer).collect();
-    let mut differ = apart(&looks) > DIFFERENT * open;
-    if bounces && looks.iter().all(|look| norm(look.iter().copied()) < DIFFERENT * open) {
+    let mut differ = differ(looks.iter().cloned(), DIFFERENT * open);
+    if !differ && bounces && looks.iter().all(|look| norm(look.iter().copied()) < DIFFERENT * open) {
         // Where hardly any sky is seen, light of other surfaces is all there is.
-        let looks: Vec<Vec<f32>> = found.iter().map(|one| sent_to(gatherer, &one.2, worker)).collect();
-        differ |= apart(&looks) > DIM * open;
+        differ = self::differ(found.iter().map(|one| sent_to(gatherer, &one.2, worker)), DIM * open);
     }
     if differ { found.into_iter().map(|(to, share, _)| (to, share)).collect() } else { Vec::new() }
 }
@@ -192,8 +191,8 @@ fn norm(look: impl Iterator<Item = f32>) -> f32 {
     look.map(|x| x * x).sum::<f32>().sqrt()
 }
 
-/// Largest distance of a look from the first.
-fn apart(looks: &[Vec<f32>]) -> f32 {
-    let from_first = |look: &Vec<f32>| norm(look.iter().zip(&looks[0]).map(|(a, b)| a - b));
-    looks.iter().map(from_first).fold(0.0, f32::max)
+/// Whether some look is farther than that from the first; no more are taken than that asks for.
+fn differ(mut looks: impl Iterator<Item = Vec<f32>>, least: f32) -> bool {
+    let Some(first) = looks.next() else { return false };
+    looks.any(|look| norm(look.iter().zip(&first).map(|(a, b)| a - b)) > least)
 }

@@ -1,9 +1,8 @@
 //! Whether gloss is better kept at vertices or at texels: by how finely the scene is cut, against the error asked for.
 
-use crate::bake::plan_with;
 use crate::extras::Extras;
 use crate::mirror::shining;
-use crate::plan::{may_be_glossy, simulates};
+use crate::plan::{may_be_glossy, prepare, simulates};
 use crate::refine::refined;
 use crate::{Error, settings};
 use coeff_io::{Effect, Refine, Settings};
@@ -36,10 +35,14 @@ pub struct StorageChoice {
 pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Error> {
     settings::check(settings)?;
     let vertices = |reason: String| Ok(StorageChoice { texels: None, reason });
+    let matte = || vertices("vertices: no reflection is simulated by direction".into());
     // Most scenes need no plan, which takes as long to find as all refinement.
-    let glossy = || Ok(simulates(&plan_with(scene, settings, &Extras::default())?, Effect::Glossy));
-    if !(may_be_glossy(scene, settings) && glossy()?) {
-        return vertices("vertices: no reflection is simulated by direction".into());
+    if !may_be_glossy(scene, settings) {
+        return matte();
+    }
+    let split = refined(scene, settings, &|_| ControlFlow::Continue(()))?;
+    if !simulates(&prepare(&split, settings, &Extras::default())?.plan, Effect::Glossy) {
+        return matte();
     }
     let shines = shining(scene);
     let bent = scene.meshes.iter().any(|mesh| {
@@ -49,8 +52,10 @@ pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Erro
     });
     let before: usize = scene.meshes.iter().map(|mesh| mesh.positions.len()).sum();
     // As finely as shadows between the vertices ask for, whether the file is to be cut so or not.
-    let asked = Settings { refine: Refine::Auto, ..settings.clone() };
-    let fine = refined(scene, &asked, &|_| ControlFlow::Continue(()))?;
+    let fine = match settings.refine {
+        Refine::Auto => split,
+        _ => refined(scene, &Settings { refine: Refine::Auto, ..settings.clone() }, &|_| ControlFlow::Continue(()))?,
+    };
     let after: usize = fine.meshes.iter().map(|mesh| mesh.positions.len()).sum();
     let side = (after as f64 * TEXELS_PER_VERTEX / FILLED).sqrt();
     let side = (libm::ceil(side / 16.0) as u32 * 16).clamp(SIDES[0], SIDES[1]);
