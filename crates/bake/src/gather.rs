@@ -298,27 +298,33 @@ impl Gatherer<'_> {
             let blockers = self.blockers_through(layer, origin, &set.weights, openness, worker);
             return Blockers { rays, ..blockers };
         }
-        let found = worker.nearest.iter().enumerate().filter_map(|(j, hit)| hit.map(|hit| (j, hit)));
+        let hits = || worker.nearest.iter().enumerate().filter_map(|(j, hit)| hit.as_ref().map(|hit| (j, hit)));
         // A direction that was foreseen to be open and is not stands for its like that were not tried.
         let weight = |j: usize| f64::from(set.weights[j]) * f64::from(1.0 - worker.open[j]);
-        let found: Vec<(usize, Hit, f64)> = found.map(|(j, hit)| (j, hit, weight(j))).collect();
-        let total: f64 = found.iter().map(|(_, _, weight)| weight).sum();
+        let (mut total, mut inside, mut backs, mut whole_backs) = (0.0, 0.0, 0.0, 0.0);
+        for (j, hit) in hits() {
+            let weight = weight(j);
+            total += weight;
+            if hit.front {
+                continue;
+            }
+            inside += if self.world.bodies.is_inside(hit) { weight } else { 0.0 };
+            if !self.world.is_two_sided(hit.triangle) {
+                backs += weight;
+                whole_backs += if self.world.has_holes(hit.triangle) { 0.0 } else { weight };
+            }
+        }
         if total <= 0.0 {
             return Blockers { rays, ..Blockers::default() };
         }
         let scale = (1.0 - f64::from(openness)) / total;
-        let bodies = &self.world.bodies;
-        let sum = |is: &dyn Fn(&Hit) -> bool| -> f64 {
-            found.iter().filter(|(_, hit, _)| is(hit)).map(|(_, _, weight)| weight).sum()
-        };
-        let inside = sum(&|hit| bodies.is_inside(hit));
-        let is_back = |hit: &Hit| !hit.front && !self.world.is_two_sided(hit.triangle);
-        let behind = sum(&is_back) + sum(&|hit| is_back(hit) && !self.world.has_holes(hit.triangle));
         let [xs, ys, zs] = &worker.directions;
         let direction = |j: usize| Vec3::new(xs[j], ys[j], zs[j]);
-        let found = found.into_iter().map(|(j, hit, weight)| (direction(j), hit, (weight * scale) as f32));
-        let [inside_share, behind_share] = [inside, behind.min(total)].map(|sum| (sum / total) as f32);
-        Blockers { rays, inside_share, behind_share, found: found.collect(), filters: Vec::new() }
+        let mut found = Vec::with_capacity(rays as usize);
+        found.extend(hits().map(|(j, hit)| (direction(j), *hit, (weight(j) * scale) as f32)));
+        let shares = [inside, f64::min(backs + whole_backs, total)];
+        let [inside_share, behind_share] = shares.map(|sum| (sum / total) as f32);
+        Blockers { rays, inside_share, behind_share, found, filters: Vec::new() }
     }
 
     fn pack(&self, blockers: Blockers, index: u32, out: &mut Gathered) {

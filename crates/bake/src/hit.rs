@@ -56,7 +56,9 @@ pub(crate) fn packed(world: &World<'_>, hit: &Hit, reflected: Vec3, near: &[Near
 /// A surface that close lies in the shade of whatever the receiver stands on; its vertices, farther off, do not.
 pub(crate) fn near_points(world: &World<'_>, hits: &[(Hit, Vec3)], worth: f32) -> Vec<NearPoint> {
     let extent = |triangle| world.extent(triangle) / world.cells.sides(triangle) as f32;
-    let mut near: Vec<&(Hit, Vec3)> = hits.iter().filter(|(hit, _)| hit.t < extent(hit.triangle)).collect();
+    // Most are farther than any triangle is large: no need to look theirs up.
+    let is_near = |hit: &Hit| hit.t < world.longest && hit.t < extent(hit.triangle);
+    let mut near: Vec<&(Hit, Vec3)> = hits.iter().filter(|(hit, _)| is_near(hit)).collect();
     let key = |hit: &Hit| (hit.triangle, hit.front, world.cells.at(hit.triangle, [hit.u, hit.v]));
     near.sort_by_key(|(hit, _)| key(hit));
     let groups = near.chunk_by(|(a, _), (b, _)| key(a) == key(b));

@@ -17,6 +17,8 @@ pub(crate) struct Sender {
 const BACK: u32 = 1 << 31;
 /// Bit of [`Sender::key`] for a near point.
 const NEAR: u32 = 1 << 30;
+/// Odd factor that spreads keys over a hash table: 2^32 over the golden ratio.
+const SPREAD: u32 = 0x9e37_79b1;
 /// Bit of [`Sender::key`] for a cell.
 const CELL: u32 = 1 << 29;
 
@@ -112,20 +114,29 @@ pub(crate) fn fill_row(world: &World<'_>, hits: &[PackedHit], row: &mut Vec<Send
     merge(row);
 }
 
-/// Sums the weights of entries of one key.
+/// Sums the weights of entries of one key, in the order of the rays; keys rise.
 fn merge(row: &mut Vec<Sender>) {
-    // With its place behind the key each is one of a kind, and of one key the order of the sums is that of the rays.
-    let mut order: Vec<u64> = (0..).zip(&*row).map(|(place, sender)| u64::from(sender.key) << 32 | place).collect();
-    order.sort_unstable();
-    let sum = |same: &[u64]| {
-        let mut senders = same.iter().map(|&place| row[place as u32 as usize]);
-        let first = senders.next().expect("no group is empty");
-        senders.fold(first, |mut sum, next| {
-            sum.weight.iter_mut().zip(next.weight).for_each(|(sum, more)| *sum += more);
-            sum
-        })
-    };
-    *row = order.chunk_by(|a, b| a >> 32 == b >> 32).map(sum).collect();
+    // A hash table of the places of keys in the row, at most half full: far fewer keys are left to sort than there are entries.
+    let bits = (2 * row.len()).next_power_of_two().ilog2().max(1);
+    let mut places = vec![u32::MAX; 1 << bits];
+    let mut kept = 0;
+    for k in 0..row.len() {
+        let next = row[k];
+        let mut at = (next.key.wrapping_mul(SPREAD) >> (u32::BITS - bits)) as usize;
+        while places[at] != u32::MAX && row[places[at] as usize].key != next.key {
+            at = (at + 1) & (places.len() - 1);
+        }
+        if places[at] == u32::MAX {
+            places[at] = kept as u32;
+            row[kept] = next;
+            kept += 1;
+        } else {
+            let sum = &mut row[places[at] as usize].weight;
+            sum.iter_mut().zip(next.weight).for_each(|(sum, more)| *sum += more);
+        }
+    }
+    row.truncate(kept);
+    row.sort_unstable_by_key(|sender| sender.key);
 }
 
 #[cfg(test)]

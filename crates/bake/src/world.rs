@@ -29,6 +29,8 @@ pub(crate) struct World<'a> {
     pub(crate) extents: Vec<Vec3>,
     /// The same of all that rays meet.
     pub(crate) extent: Vec3,
+    /// Longest edge of all that rays meet, metres.
+    pub(crate) longest: f32,
     /// Of each traced triangle: its corners as vertices of the whole scene.
     pub(crate) corners: Vec<[u32; 3]>,
     /// Of each traced triangle: its mesh and its index within the mesh.
@@ -39,6 +41,8 @@ pub(crate) struct World<'a> {
     has_masks: bool,
     /// Whether rays are traced even for receivers that nothing stands above.
     pub(crate) trace_all: bool,
+    /// Albedo of each mesh, where it is the same all over it.
+    even: Vec<Option<Vec3>>,
     /// Of each material; empty where all are matte.
     shine: Vec<Shine>,
     /// What the mirror of each material sends to all sides, where it is the same everywhere on it.
@@ -47,6 +51,16 @@ pub(crate) struct World<'a> {
     pub(crate) bodies: Bodies,
     /// Cells of triangles that are too large to carry bounces.
     pub(crate) cells: Cells,
+}
+
+/// Albedo of a mesh, where neither textures nor vertices give it colours.
+fn even_albedo(scene: &Scene, m: usize, mesh: &Mesh) -> Option<Vec3> {
+    let material = scene.material(m);
+    let is_even = material.base_color_texture.is_none()
+        && (material.metallic <= 0.0 || material.metallic_roughness_texture.is_none())
+        && mesh.colors.is_empty()
+        && !mesh.triangles.is_empty();
+    is_even.then(|| scene.albedo(m, 0, 0.0, 0.0))
 }
 
 /// What the mirror of a dielectric part sends to all sides of light from all sides.
@@ -79,6 +93,8 @@ impl<'a> World<'a> {
             tracer: Tracer::build(&[], &[], &[]),
             extents: scene.meshes.iter().map(start::extent).collect(),
             extent: Vec3::ZERO,
+            longest: 0.0,
+            even: scene.meshes.iter().enumerate().map(|(m, mesh)| even_albedo(scene, m, mesh)).collect(),
             corners: Vec::new(),
             sources: Vec::new(),
             translucent: None,
@@ -113,6 +129,7 @@ impl<'a> World<'a> {
         }
         world.tracer = Tracer::build(&positions, &world.corners, &masked);
         world.bodies = Bodies::of(&world);
+        world.longest = world.longest_from(0);
         Ok(world)
     }
 
@@ -136,6 +153,7 @@ impl<'a> World<'a> {
         if !corners.is_empty() {
             let tracer = Tracer::build(&positions, &corners, &vec![true; corners.len()]);
             self.translucent = Some(Translucent { tracer, first: opaque as u32, tints });
+            self.longest = self.longest.max(self.longest_from(opaque));
         }
         Ok(())
     }
@@ -253,7 +271,7 @@ impl<'a> World<'a> {
     /// more by what the mirror of a dielectric returns on its mean where that is not sent by direction; never more than all.
     pub(crate) fn sent(&self, hit: &Hit) -> Vec3 {
         let (mesh, local) = self.locate(hit.triangle);
-        let albedo = self.scene.albedo(mesh, local, hit.u, hit.v);
+        let albedo = self.even[mesh].unwrap_or_else(|| self.scene.albedo(mesh, local, hit.u, hit.v));
         let shine = self.shine.get(self.scene.meshes[mesh].material as usize).copied().unwrap_or(Shine::Matte);
         let by_direction = match shine {
             Shine::Matte => return albedo,
@@ -271,6 +289,11 @@ impl<'a> World<'a> {
         });
         // glTF's mix returns up to 2 % more than it takes; over many bounces that would grow without end.
         (body + mirrored).min(Vec3::ONE)
+    }
+
+    /// Longest edge of the traced triangles from a number on.
+    fn longest_from(&self, first: usize) -> f32 {
+        (first..self.corners.len()).map(|t| self.extent(t as u32)).fold(0.0, f32::max)
     }
 
     /// Longest edge of a traced triangle, metres.
