@@ -39,6 +39,7 @@ pub(crate) use borders::read_back;
 pub(crate) use check::{check, check_sheets};
 pub use directional::{Directional, DirectionalTexel, directional};
 pub(crate) use join::stitch_all;
+pub(crate) use stitch::Part;
 
 /// What maps are wanted.
 #[derive(Debug, Clone, PartialEq)]
@@ -149,6 +150,7 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         sheets.push(gather(done, &arrivals, sheet, first_index)?);
         first_index += sheet.width * sheet.height;
     }
+    let parts = [Part { numbers: 0..shape.len(), means: shape.channels }];
     for gathered in &mut sheets {
         done.monitor.check()?;
         // Where a whole chart is hidden the vertices tell.
@@ -156,7 +158,7 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
         gathered.record.unfilled = gathered.fill_from_vertices(done, shape) as u64;
         (0..settings.dilation.min(1)).for_each(|_| gathered.plate.dilate());
         if settings.stitch {
-            read_back(&mut gathered.plate);
+            read_back(&mut gathered.plate, &parts);
         }
     }
     let mut sheet_of_mesh = vec![None; prt.meshes.len()];
@@ -165,7 +167,7 @@ pub(crate) fn bake(done: &Done<'_>, settings: &MapSettings, prt: &mut Prt) -> Re
     }
     if settings.stitch && settings.dilation > 0 {
         let mut plates: Vec<&mut Plate> = sheets.iter_mut().map(|sheet| &mut sheet.plate).collect();
-        stitch_all(done, &sheet_of_mesh, &mut plates);
+        stitch_all(done, &sheet_of_mesh, &parts, &mut plates);
     }
     let mut record = summed(&sheets);
     let light = done.map_light();

@@ -3,6 +3,7 @@
 use super::fixed::FixedBounces;
 use crate::arrival::Arrival;
 use crate::compress::Sketch;
+use crate::maps::Part;
 use glam::Vec3;
 use sh_math::{Bands, zonal};
 
@@ -73,6 +74,23 @@ impl RowMaker<'_> {
             bounce: if gloss { bounce } else { 0 },
             tables: if gloss { tables } else { 0 },
         }
+    }
+
+    /// The parts of a row of a layout whose first numbers are means over all directions.
+    pub(crate) fn parts(&self, layout: Layout) -> Vec<Part> {
+        let means = match &self.bouncing {
+            // The vectors of a sketch have signs of their own.
+            Bouncing::None | Bouncing::Sketched(_) => 0,
+            Bouncing::Whole => self.channels,
+            Bouncing::Fixed(_) => 3,
+        };
+        let mut parts = vec![
+            Part { numbers: 0..layout.diffuse, means: self.channels },
+            Part { numbers: layout.visibility(), means: 1 },
+        ];
+        parts.extend((0..layout.tables).map(|table| Part { numbers: layout.bounces(table), means }));
+        parts.retain(|part| part.means > 0 && !part.numbers.is_empty());
+        parts
     }
 
     /// Numbers of a row of bounces in full.

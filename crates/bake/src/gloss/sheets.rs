@@ -84,12 +84,12 @@ pub(crate) fn bake(
         first_index = first_index.wrapping_add(plan.settings.width * plan.settings.height);
         (0..settings.dilation.min(1)).for_each(|_| plate.dilate());
         if settings.stitch {
-            read_back(&mut plate);
+            read_back(&mut plate, &maker.parts(plan.layout));
         }
         plates.push(plate);
     }
     if settings.stitch && settings.dilation > 0 {
-        stitch(done, plans, &mut plates);
+        stitch(done, maker, plans, &mut plates);
     }
     errors.sort_by(f32::total_cmp);
     let at = |share: f64| errors.get((errors.len().saturating_sub(1) as f64 * share) as usize).copied().unwrap_or(0.0);
@@ -210,7 +210,7 @@ fn fill_from_vertices(
 }
 
 /// Makes both sides of seams agree, sheets of one layout among each other.
-fn stitch(done: &Done<'_>, plans: &[SheetPlan], plates: &mut [Plate]) {
+fn stitch(done: &Done<'_>, maker: &RowMaker<'_>, plans: &[SheetPlan], plates: &mut [Plate]) {
     let mut layouts: Vec<Layout> = Vec::new();
     for plan in plans {
         if !layouts.contains(&plan.layout) {
@@ -224,6 +224,6 @@ fn stitch(done: &Done<'_>, plans: &[SheetPlan], plates: &mut [Plate]) {
             plan.settings.meshes.iter().for_each(|&mesh| sheet_of_mesh[mesh] = Some(own.len() as u32));
             own.push(plate);
         }
-        stitch_all(done, &sheet_of_mesh, &mut own);
+        stitch_all(done, &sheet_of_mesh, &maker.parts(layout), &mut own);
     }
 }

@@ -1,7 +1,7 @@
 //! Where the light of sheets has to agree: look-ups on both sides of every seam.
 
 use super::plate::{NONE, Plate};
-use super::stitch::{Agreement, stitch};
+use super::stitch::{Agreement, Part, stitch};
 use crate::extras::Done;
 use glam::Vec2;
 use scene::lightmap::seams;
@@ -11,8 +11,8 @@ const PER_TEXEL: f32 = 2.0;
 /// Look-ups to a texel that holds something, over all seams: sound coordinates stay far below.
 const MOST_PER_SLOT: usize = 32;
 
-/// Makes both sides of every seam between the meshes of all sheets agree.
-pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], plates: &mut [&mut Plate]) {
+/// Makes both sides of every seam between the meshes of all sheets agree, whose rows have these parts.
+pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], parts: &[Part], plates: &mut [&mut Plate]) {
     let meshes: Vec<usize> = (0..sheet_of_mesh.len()).filter(|&mesh| sheet_of_mesh[mesh].is_some()).collect();
     let sheet_of = |mesh: u32| sheet_of_mesh[mesh as usize].expect("only meshes with a sheet") as usize;
     let mut first_slot = vec![0u32];
@@ -50,7 +50,7 @@ pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], plates:
     let mut values: Vec<f32> = plates.iter_mut().flat_map(|plate| std::mem::take(&mut plate.values)).collect();
     let unseen =
         plates.iter().zip(&first_slot).flat_map(|(plate, first)| plate.unseen.iter().map(move |slot| slot + first));
-    stitch(&agreements, &unseen.collect(), row_len, &mut values);
+    stitch(&agreements, &unseen.collect(), (parts, row_len), &mut values);
     let mut rest = &values[..];
     for plate in plates {
         let (own, others) = rest.split_at(plate.slots() * row_len);

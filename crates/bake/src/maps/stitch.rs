@@ -7,6 +7,7 @@
 
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// Weight of staying as it was, against one look-up at a seam. There are about two look-ups to a texel.
 const STAY: f32 = 0.02;
@@ -22,8 +23,20 @@ const ENOUGH: f64 = 1e-4;
 /// Two look-ups that should agree: slots with weights, those of the second side negative.
 pub(crate) type Agreement = Vec<(u32, f32)>;
 
+/// Numbers of a row that belong together. The first of them, as many as there are channels, are means of light over all directions.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Part {
+    pub(crate) numbers: Range<usize>,
+    pub(crate) means: usize,
+}
+
 /// Moves the rows (`row_len` numbers each) of the slots that the agreements name; those that no view shows more readily.
-pub(crate) fn stitch(agreements: &[Agreement], unseen: &BTreeSet<u32>, row_len: usize, values: &mut [f32]) {
+pub(crate) fn stitch(
+    agreements: &[Agreement],
+    unseen: &BTreeSet<u32>,
+    (parts, row_len): (&[Part], usize),
+    values: &mut [f32],
+) {
     let mut slots: Vec<u32> = agreements.iter().flatten().map(|&(slot, _)| slot).collect();
     slots.sort_unstable();
     slots.dedup();
@@ -31,16 +44,25 @@ pub(crate) fn stitch(agreements: &[Agreement], unseen: &BTreeSet<u32>, row_len: 
     let rows: Vec<Agreement> =
         agreements.iter().map(|row| row.iter().map(|&(slot, weight)| (local(slot), weight)).collect()).collect();
     let stay: Vec<f32> = slots.iter().map(|slot| if unseen.contains(slot) { YIELD } else { STAY }).collect();
-    settle(&rows, &slots, &stay, row_len, values);
+    settle(&rows, &slots, &stay, (parts, row_len), values);
 }
 
 /// Moves the rows of the first of some slots, as many as `stay` has weights of staying as they were. The agreements name slots by their places in
 /// `slots`; the others keep what they hold, and one slot may be there twice: once as it was.
-pub(super) fn settle(rows: &[Agreement], slots: &[u32], stay: &[f32], row_len: usize, values: &mut [f32]) {
+pub(super) fn settle(
+    rows: &[Agreement],
+    slots: &[u32],
+    stay: &[f32],
+    (parts, row_len): (&[Part], usize),
+    values: &mut [f32],
+) {
     if rows.is_empty() {
         return;
     }
     let rows = Matrix::of(rows);
+    let row = |slot: u32| slot as usize * row_len..(slot as usize + 1) * row_len;
+    let moved = &slots[..stay.len()];
+    let before: Vec<f32> = moved.iter().flat_map(|&slot| &values[row(slot)]).copied().collect();
     let solved: Vec<Vec<[f32; LANES]>> = (0..row_len.div_ceil(LANES))
         .into_par_iter()
         .map(|batch| {
@@ -53,10 +75,28 @@ pub(super) fn settle(rows: &[Agreement], slots: &[u32], stay: &[f32], row_len: u
         })
         .collect();
     for (batch, solved) in solved.into_iter().enumerate() {
-        for (&slot, lanes) in slots[..stay.len()].iter().zip(solved) {
-            let row = &mut values[slot as usize * row_len..][..row_len];
-            row[batch * LANES..].iter_mut().zip(lanes).for_each(|(value, lane)| *value = lane);
+        for (&slot, lanes) in moved.iter().zip(solved) {
+            let own = &mut values[row(slot)];
+            own[batch * LANES..].iter_mut().zip(lanes).for_each(|(value, lane)| *value = lane);
         }
+    }
+    for (&slot, before) in moved.iter().zip(before.chunks_exact(row_len.max(1))) {
+        for part in parts {
+            let own = part.numbers.clone();
+            hold_back(&mut values[row(slot)][own.clone()], &before[own], part.means);
+        }
+    }
+}
+
+/// Keeps the means of a part from falling below nothing: no light is less. All of it goes as far as the first of them that gets there.
+fn hold_back(part: &mut [f32], before: &[f32], means: usize) {
+    let falls = |now: f32, was: f32| now < 0.0 && was >= 0.0;
+    let pairs = part.iter().zip(before).take(means).filter(|(now, was)| falls(**now, **was));
+    let Some(share) = pairs.map(|(now, was)| was / (was - now)).reduce(f32::min) else { return };
+    for (index, (now, was)) in part.iter_mut().zip(before).enumerate() {
+        let held = was + share * (*now - was);
+        // Rounding may leave the least bit less than nothing.
+        *now = if index < means && falls(held, *was) { 0.0 } else { held };
     }
 }
 
@@ -153,7 +193,7 @@ fn dot(a: &[[f32; LANES]], b: &[[f32; LANES]]) -> [f64; LANES] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Agreement, STAY, YIELD, stitch};
+    use super::{Agreement, Part, STAY, YIELD, stitch};
     use std::collections::BTreeSet;
 
     /// One agreement of two texels: the least of `(a - b)^2 + mu ((a - a0)^2 + (b - b0)^2)` has `a - b = (a0 - b0) mu / (2 + mu)`, and
@@ -161,7 +201,7 @@ mod tests {
     #[test]
     fn two_texels_meet_in_the_middle() {
         let mut values = vec![3.0, 10.0, 1.0, -2.0];
-        stitch(&[vec![(0, 1.0), (1, -1.0)]], &BTreeSet::new(), 2, &mut values);
+        stitch(&[vec![(0, 1.0), (1, -1.0)]], &BTreeSet::new(), (&[], 2), &mut values);
         for k in 0..2 {
             let (before, after) = ([3.0, 10.0][k] - [1.0, -2.0][k], values[k] - values[2 + k]);
             assert!((after - before * STAY / (2.0 + STAY)).abs() < 1e-4, "{after}");
@@ -175,7 +215,7 @@ mod tests {
     fn what_no_view_shows_gives_way() {
         let moved = |unseen: &[u32]| {
             let mut values = vec![3.0, 1.0];
-            stitch(&[vec![(0, 1.0), (1, -1.0)]], &unseen.iter().copied().collect(), 1, &mut values);
+            stitch(&[vec![(0, 1.0), (1, -1.0)]], &unseen.iter().copied().collect(), (&[], 1), &mut values);
             values[0] - 3.0
         };
         let exact = -2.0 * YIELD / (STAY + YIELD + STAY * YIELD);
@@ -191,11 +231,33 @@ mod tests {
             (0..N - 1).map(|k| vec![(k as u32, 0.75), ((k + 1) as u32, 0.25), (((k + 4) % N) as u32, -1.0)]).collect();
         let before: Vec<f32> = (0..N).map(|k| ((k * k * 7) % 11) as f32).collect();
         let mut values = before.clone();
-        stitch(&rows, &BTreeSet::new(), 1, &mut values);
+        stitch(&rows, &BTreeSet::new(), (&[], 1), &mut values);
         let exact = dense(&rows, &before);
         let worst = |a: &[f32]| a.iter().zip(&exact).map(|(x, e)| (f64::from(*x) - e).abs()).fold(0.0, f64::max);
         assert!(worst(&values) < 2e-3, "{}", worst(&values));
         assert!(worst(&before) > 1.0, "the start must be seen to be wrong");
+    }
+
+    /// Two look-ups that are to agree with the dark, of a row of RGB: a texel of one of them without green, which would fall below nothing with what
+    /// the other takes off.
+    fn beside_the_dark(means: usize) -> Vec<f32> {
+        let mut values = vec![1.0, 0.0, 1.0, 1.0, 0.5, 1.0, 1.0, 0.0, 1.0];
+        let parts = [Part { numbers: 0..3, means }];
+        stitch(&[vec![(0, 0.5), (1, 0.5), (2, -1.0)]], &BTreeSet::new(), (&parts, 3), &mut values);
+        values
+    }
+
+    #[test]
+    fn no_channel_falls_below_nothing() {
+        let values = beside_the_dark(3);
+        assert!(values.iter().all(|value| *value >= 0.0), "{values:?}");
+        assert!(values[4] < 0.45, "what has light still gives way: {values:?}");
+    }
+
+    /// By red alone.
+    #[test]
+    fn no_channel_falls_below_nothing_can_fail() {
+        assert!(beside_the_dark(1)[1] < -0.05, "{:?}", beside_the_dark(1));
     }
 
     fn dense(rows: &[Agreement], before: &[f32]) -> Vec<f64> {
