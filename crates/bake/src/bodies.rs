@@ -22,8 +22,6 @@ const HOLE: f64 = 0.1;
 /// How far beyond an open edge another surface is looked for, over the root of the component's area: what stands on something often
 /// hovers a hair above it.
 const BEYOND: [f32; 2] = [1e-3, 1e-2];
-/// Most surfaces behind each other among which the one that covers an open edge is looked for.
-const MOST_CROSSINGS: usize = 256;
 /// Most triangles of an inward component from which the body around it is looked for.
 const WITNESSES: usize = 9;
 
@@ -137,7 +135,7 @@ impl Component {
     fn comes_out(&self, world: &World<'_>, start: Vec3, direction: Vec3) -> bool {
         let ray = Ray { t_max: (self.area as f32).sqrt(), ..Ray::new(start, direction) };
         let mut entered = 0u32;
-        for hit in world.along(ray).take(MOST_CROSSINGS) {
+        for hit in world.along(ray) {
             let other = self.triangles.binary_search(&hit.triangle).is_err();
             match (other, hit.front) {
                 (true, false) if entered == 0 => return true,

@@ -12,7 +12,7 @@ use crate::passes::Monitor;
 use crate::receivers::{FaceSums, Receiver};
 use crate::repair::entry;
 use crate::split::{Edge, edges, sorted};
-use crate::world::World;
+use crate::world::{MOST_CROSSINGS, World};
 use crate::{Error, settings};
 use coeff_io::{Quality, Settings};
 use rayon::prelude::*;
@@ -113,10 +113,16 @@ fn add_gaps(mesh: &Mesh, inside: &[bool], gatherer: &Gatherer<'_>, cuts: &mut Cu
 /// and the part ends at bodies on both sides. Whether the last is inside one too is told.
 fn gap(world: &World<'_>, from: &Receiver, to: &Receiver, is_to_inside: bool) -> Option<f32> {
     // Places where surfaces are met, and in how many more bodies the way is from there on than at its start.
-    let (mut met, mut depth) = (Vec::new(), 0);
-    for hit in world.along(from.way_to(to)).filter(|hit| world.bodies.bound(hit.triangle)) {
-        depth += if hit.front { 1 } else { -1 };
-        met.push((hit.t, depth));
+    let (mut met, mut depth, mut crossings) = (Vec::new(), 0, 0);
+    for hit in world.along(from.way_to(to)) {
+        crossings += 1;
+        if world.bodies.bound(hit.triangle) {
+            depth += if hit.front { 1 } else { -1 };
+            met.push((hit.t, depth));
+        }
+    }
+    if crossings == MOST_CROSSINGS {
+        return None;
     }
     let least = met.iter().map(|(_, depth)| *depth).min()?;
     if least >= 0 || !is_to_inside && depth != least {

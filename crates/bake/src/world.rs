@@ -18,6 +18,12 @@ const MAX_TRIANGLES: usize = (1 << 30) - 1;
 /// Vertices that fit beside the bits of senders.
 const MAX_VERTICES: usize = (1 << 29) - 1;
 
+/// Most surfaces behind each other that a way is followed through.
+pub(crate) const MOST_CROSSINGS: usize = 256;
+
+/// Share of a corner that is none but for rounding.
+const RIM: f32 = 1e-6;
+
 /// Three directions at 45 degrees from the normal.
 const TRIPOD: [[f32; 3]; 3] = [[0.707, 0.0, 0.707], [-0.354, 0.612, 0.707], [-0.354, -0.612, 0.707]];
 
@@ -212,13 +218,39 @@ impl<'a> World<'a> {
         self.tracer.closest(ray, &|triangle, u, v| self.solid(triangle, u, v))
     }
 
-    /// All surfaces along a ray, from the nearest on.
-    pub(crate) fn along(&self, mut ray: Ray) -> impl Iterator<Item = Hit> {
-        std::iter::from_fn(move || {
-            let hit = self.closest(&ray)?;
-            ray.t_min = hit.t.next_up();
-            Some(hit)
-        })
+    /// All surfaces along a ray, from the nearest on, [`MOST_CROSSINGS`] at most. Several in one place count each; one that is met where its
+    /// triangles meet counts once.
+    pub(crate) fn along(&self, ray: Ray) -> impl Iterator<Item = Hit> {
+        // What was met in the place of the last.
+        let mut here: Vec<Hit> = Vec::new();
+        let solid = |triangle, u, v| self.solid(triangle, u, v);
+        let next = move || {
+            loop {
+                let hit = match here.last() {
+                    Some(last) => self.tracer.closest_after(&ray, last, &solid)?,
+                    None => self.closest(&ray)?,
+                };
+                let is_near = |other: &Hit| hit.t - other.t <= f32::EPSILON * hit.t;
+                here.retain(is_near);
+                let is_known = here.iter().any(|other| self.is_one_crossing(other, &hit));
+                here.push(hit);
+                if !is_known {
+                    return Some(hit);
+                }
+            }
+        };
+        std::iter::from_fn(next).take(MOST_CROSSINGS)
+    }
+
+    /// Whether two hits of a ray in one place are one of a surface: where two of its triangles meet that face alike.
+    fn is_one_crossing(&self, one: &Hit, other: &Hit) -> bool {
+        let is_at_rim = |hit: &Hit| hit.u.min(hit.v).min(1.0 - hit.u - hit.v) <= RIM;
+        if one.front != other.front || !is_at_rim(one) || !is_at_rim(other) {
+            return false;
+        }
+        let [a, b] = [one, other].map(|hit| self.points(hit.triangle));
+        let shared = a.iter().filter(|corner| b.contains(corner)).count();
+        (1..3).contains(&shared)
     }
 
     /// Whether a triangle is opaque and has one side, so that its back may be the inside of a body.

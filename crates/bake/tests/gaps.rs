@@ -74,3 +74,23 @@ fn a_gap_between_beams_is_dark_can_fail() {
     let away = worst(&quiet(&scene(), &settings(Refine::Off)));
     assert!(away > 10.0 * AGREE, "{away}");
 }
+
+/// The same with a board within the lower beam, flush with its upper side, in which no vertex of the wall lies.
+fn scene_with_board() -> Scene {
+    let mut scene = scene();
+    let (low, size) = (Vec3::new(-HALF - 0.5, -0.5 * GAP[0] - 0.02, -0.2), Vec3::new(2.0 * HALF + 1.0, 0.02, 0.24));
+    let mut board = beam(low, size);
+    // Sums round.
+    let upper = scene.meshes[7..].iter().flat_map(|mesh| mesh.positions.iter().map(|p| p.y)).fold(f32::MIN, f32::max);
+    let all = board.iter_mut().flat_map(|mesh| &mut mesh.positions);
+    all.filter(|p| p.y > low.y + 0.01).for_each(|p| p.y = upper);
+    scene.meshes.extend(board);
+    scene
+}
+
+/// Where a way comes out of two bodies in one place it leaves both.
+#[test]
+fn a_gap_above_a_flush_board_is_dark() {
+    let away = worst(&quiet(&scene_with_board(), &settings(Refine::Auto)));
+    assert!(away < AGREE, "{away}");
+}

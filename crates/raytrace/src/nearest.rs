@@ -11,7 +11,8 @@ use crate::walk::{LATER, PERMUTED, Solid, Walker};
 pub(crate) fn nearer(block: &Block, lane: usize, line: &Line, best: Option<&Hit>, solid: Solid<'_>) -> Option<Hit> {
     let mut hit = meet(line, block.corners(lane))?;
     hit.triangle = block.triangles[lane];
-    let beats = best.is_none_or(|best| (hit.t, hit.triangle) < (best.t, best.triangle));
+    let place = (hit.t, hit.triangle);
+    let beats = place > line.after && best.is_none_or(|best| place < (best.t, best.triangle));
     let counts = beats && (block.masked >> lane & 1 == 0 || solid(hit.triangle, hit.u, hit.v));
     counts.then_some(hit)
 }

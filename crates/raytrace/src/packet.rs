@@ -2,7 +2,7 @@
 
 use crate::block::dot;
 use crate::lanes::Lanes;
-use crate::ray::Line;
+use crate::ray::{FIRST, Line};
 use crate::sight::Plane3;
 use crate::tree::{Node, Tree, WIDTH};
 use crate::walk::{Apart, LATER, Walker};
@@ -131,6 +131,7 @@ impl<'a, R: Lanes> Packet<'a, R> {
             scale: 1.0,
             t_min: 0.0,
             t_max: f32::INFINITY,
+            after: FIRST,
         }
     }
 

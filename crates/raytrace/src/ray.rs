@@ -56,7 +56,12 @@ pub(crate) struct Line {
     pub(crate) scale: f32,
     pub(crate) t_min: f32,
     pub(crate) t_max: f32,
+    /// Hits count that come after this parameter and triangle number; before all of them by default.
+    pub(crate) after: (f32, u32),
 }
+
+/// Before all hits.
+pub(crate) const FIRST: (f32, u32) = (f32::NEG_INFINITY, 0);
 
 impl Line {
     /// None where the ray has no direction, an empty range or anything that is not a number.
@@ -73,7 +78,15 @@ impl Line {
             if (0.5..=1.0).contains(&largest) { (ray.direction, 1.0) } else { rescaled(ray.direction, largest)? };
         let flush = |x: f32| if x.abs() < SMALLEST { 0.0 } else { x };
         let direction = direction.map(flush);
-        Some(Line { origin: ray.origin, direction, inverse: direction.recip(), scale, t_min, t_max: ray.t_max })
+        Some(Line {
+            origin: ray.origin,
+            direction,
+            inverse: direction.recip(),
+            scale,
+            t_min,
+            t_max: ray.t_max,
+            after: FIRST,
+        })
     }
 
     /// One bit per axis: set where the direction is negative.

@@ -67,6 +67,14 @@ impl Tracer {
         with_stack(|stack| dispatch(self.level, Closest { tree: &self.tree, line, stack, solid }))
     }
 
+    /// The hit that comes after one of the same ray: the next of those equally near by triangle number, else the next nearest.
+    pub fn closest_after(&self, ray: &Ray, hit: &Hit, solid: &dyn Fn(u32, f32, f32) -> bool) -> Option<Hit> {
+        // Hits at the least parameter of a ray do not count.
+        let t_min = ray.t_min.max(hit.t.next_down());
+        let line = Line { after: (hit.t, hit.triangle), ..self.line(&Ray { t_min, ..*ray })? };
+        with_stack(|stack| dispatch(self.level, Closest { tree: &self.tree, line, stack, solid }))
+    }
+
     /// Whether anything lies on the ray; `solid` as for [`Tracer::closest`].
     pub fn occluded(&self, ray: &Ray, solid: &dyn Fn(u32, f32, f32) -> bool) -> bool {
         let Some(line) = self.line(ray) else {

@@ -110,3 +110,43 @@ fn agreement_can_fail() {
     let differs = |ray: &&Ray| !agree(brute_closest(&positions, &triangles, ray), tracer.closest(ray, SOLID), 1.0);
     assert!(rays.iter().filter(differs).count() > 100, "a thousandth of a unit shows");
 }
+
+/// A soup of which each triangle is there twice, once from each side.
+fn doubled() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let (positions, mut triangles) = soup(300, 0.5, 12);
+    triangles.extend(triangles.clone().into_iter().map(|[a, b, c]| [a, c, b]));
+    (positions, triangles)
+}
+
+/// Number of hits along rays, by asking for the one after each.
+fn met(next: &dyn Fn(&Tracer, &Ray, &Hit) -> Option<Hit>) -> [usize; 2] {
+    let (positions, triangles) = doubled();
+    let tracer = Tracer::build(&positions, &triangles, &[]);
+    let alone: Vec<Tracer> = triangles.iter().map(|&one| Tracer::build(&positions, &[one], &[])).collect();
+    let mut random = Random::new(13);
+    let (mut all, mut found) = (0, 0);
+    for _ in 0..200 {
+        let ray = Ray::new(random.point() * 1.5, random.direction());
+        all += alone.iter().filter(|one| one.closest(&ray, SOLID).is_some()).count();
+        let hits = std::iter::successors(tracer.closest(&ray, SOLID), |hit| next(&tracer, &ray, hit));
+        let mut hits: Vec<u32> = hits.map(|hit| hit.triangle).collect();
+        found += hits.len();
+        hits.sort_unstable();
+        assert!(hits.windows(2).all(|pair| pair[0] < pair[1]), "none is met twice");
+    }
+    [all, found]
+}
+
+/// One hit after another leads to all triangles that a ray meets, those in one place too.
+#[test]
+fn hits_follow_each_other() {
+    let [all, found] = met(&|tracer, ray, hit| tracer.closest_after(ray, hit, SOLID));
+    assert_eq!(all, found);
+}
+
+/// Going on from just behind each loses one of every two.
+#[test]
+fn hits_follow_each_other_can_fail() {
+    let [all, found] = met(&|tracer, ray, hit| tracer.closest(&Ray { t_min: hit.t.next_up(), ..*ray }, SOLID));
+    assert!(all > 500 && 2 * found <= all, "{found} of {all}");
+}

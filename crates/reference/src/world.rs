@@ -176,14 +176,13 @@ impl<'a> Layer<'a> {
     }
 
     /// The first hit that is drawn: a front, or a back of a double-sided surface.
-    fn drawn(&self, mut ray: Ray) -> Option<Hit> {
-        loop {
-            let hit = self.closest(&ray)?;
-            if hit.front || self.scene.material(self.part(hit.triangle).0).double_sided {
-                return Some(hit);
-            }
-            ray.t_min = hit.t.next_up();
+    fn drawn(&self, ray: Ray) -> Option<Hit> {
+        let mut hit = self.closest(&ray)?;
+        while !hit.front && !self.scene.material(self.part(hit.triangle).0).double_sided {
+            // A front may lie in the same place: signs have a face to each side.
+            hit = self.tracer.closest_after(&ray, &hit, &|t, u, v| self.is_there(t, u, v))?;
         }
+        Some(hit)
     }
 
     /// Share of light from behind that a veil hides.
