@@ -15,6 +15,10 @@ const STEPS: f32 = 8.0;
 const APART: f32 = 16.0;
 /// Points of a leaf.
 const LEAF: usize = 8;
+/// Cuts that any edge may have.
+const FEW: usize = 64;
+/// Cuts of all edges that have more, to a point of the scene, and as many more.
+const MANY: [usize; 2] = [4, 20_000];
 
 /// An edge that one triangle alone has.
 struct Open {
@@ -76,7 +80,7 @@ fn at(mesh: &Mesh, vertex: u32) -> Vec3 {
 /// Where open edges are to be cut: at vertices on them from which an edge goes on along them.
 fn cuts(scene: &Scene, open: &[Open]) -> Cuts {
     let points = Points::of(scene);
-    let on: Vec<Vec<Vec3>> = open.par_iter().map(|edge| points.on(edge)).collect();
+    let on = points.on_all(open);
     let mut edges_at: HashMap<Place, Vec<usize>> = HashMap::new();
     for (index, point) in on.iter().enumerate().flat_map(|(index, on)| on.iter().map(move |point| (index, point))) {
         edges_at.entry(place_of(*point)).or_default().push(index);
@@ -210,8 +214,19 @@ impl Points {
         Self { points, nodes }
     }
 
-    /// The points on an edge.
-    fn on(&self, edge: &Open) -> Vec<Vec3> {
+    /// The points on every edge. Thousands of edges along one line, of which each holds the ends of all others, would be cut into millions of
+    /// parts: where many hold many points they are left alone.
+    fn on_all(&self, open: &[Open]) -> Vec<Vec<Vec3>> {
+        let mut on: Vec<Option<Vec<Vec3>>> = open.par_iter().map(|edge| self.on(edge, FEW)).collect();
+        let long: Vec<usize> = (0..open.len()).filter(|&index| on[index].is_none()).collect();
+        let most = (MANY[0] * self.points.len() + MANY[1]) / long.len().max(1);
+        let found: Vec<Option<Vec<Vec3>>> = long.par_iter().map(|&index| self.on(&open[index], most)).collect();
+        long.into_iter().zip(found).for_each(|(index, found)| on[index] = found);
+        on.into_iter().map(Option::unwrap_or_default).collect()
+    }
+
+    /// The points on an edge; none where there are more than `most`.
+    fn on(&self, edge: &Open, most: usize) -> Option<Vec<Vec3>> {
         let mut found = Vec::new();
         let mut stack = Vec::from_iter((!self.nodes.is_empty()).then_some(0));
         while let Some(index) = stack.pop() {
@@ -222,11 +237,14 @@ impl Points {
             if node.second == 0 {
                 let own = &self.points[node.first..node.first + node.count];
                 found.extend(own.iter().copied().filter(|&point| edge.holds(point)));
+                if found.len() > most {
+                    return None;
+                }
             } else {
                 stack.extend([node.second, index + 1]);
             }
         }
-        found
+        Some(found)
     }
 }
 
@@ -303,7 +321,7 @@ mod tests {
         let mut found = 0;
         for edge in open_edges(&scene, 0.5) {
             let all: Vec<Vec3> = points.points.iter().copied().filter(|&point| edge.holds(point)).collect();
-            let mut on = points.on(&edge);
+            let mut on = points.on(&edge, usize::MAX).expect("no bound");
             on.sort_by_key(|point| points.points.iter().position(|other| other == point));
             assert_eq!(on, all);
             found += all.len();

@@ -280,3 +280,34 @@ fn edges_that_only_meet_are_left_alone() {
     along.positions.iter_mut().filter(|p| p.z == -0.001).for_each(|p| p.z = 0.0);
     assert_ne!(with_others(vec![along]), alone, "can fail");
 }
+
+/// Pages of a book, whose edges lie on one line of 1 m and a little, none with the ends of another.
+fn book(pages: u32) -> Scene {
+    let page = |k: u32| {
+        let (from, turn) = (k as f32 / pages as f32, 0.4 + 2.3 * k as f32 / pages as f32);
+        let (along, up) = (Vec3::X, Vec3::new(0.0, turn.sin(), turn.cos()));
+        let a = from * Vec3::X;
+        Mesh {
+            positions: vec![a, a + along, a + along + up, a + up],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        }
+    };
+    Scene { meshes: (0..pages).map(page).collect(), materials: vec![scene::Material::default()], ..Scene::default() }
+}
+
+/// Triangles of a book whose edges are to be as short as 0.6 m: where nothing is cut each page becomes 16.
+fn triangles_of_book(pages: u32) -> usize {
+    let book = book(pages);
+    let refined = refine(&book, &with(Refine::Edge(0.6))).expect("splits");
+    refined.meshes.iter().map(|mesh| mesh.triangles.len()).sum()
+}
+
+/// Edges of a few pages are cut at each other's ends; those of hundreds would be cut into parts by the square of their number.
+#[test]
+fn edges_of_many_on_one_line_stay_few() {
+    assert_eq!(triangles_of_book(1), 16);
+    assert!(triangles_of_book(20) > 20 * 32, "can fail: a few are cut at the ends of all others");
+    let many = triangles_of_book(2_000);
+    assert!(many < 2_000 * 64, "{many}");
+}
