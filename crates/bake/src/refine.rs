@@ -10,7 +10,7 @@ use crate::plan::{allowed, world};
 use crate::progress::Stage;
 use crate::proximity::Proximity;
 use crate::receivers::Receivers;
-use crate::sharing::{halve_shared, has_slivers};
+use crate::sharing::halve_shared;
 use crate::small::cubes;
 use crate::split::{Edge, MOST_TRIANGLES, edge_place, edges, length};
 use crate::towards::{most_triangles, towards, triangles};
@@ -26,7 +26,8 @@ use std::ops::ControlFlow;
 pub(crate) const LEAST_TRIANGLES: f64 = 20_000.0;
 /// Least size of a scene, metres: of smaller ones squares of the areas of small triangles are less than single precision holds.
 const LEAST_SIZE: f32 = 1e-8;
-/// Rounds of halving; each halves the longest edges, so that these reach 1/4096 of the first.
+/// Rounds of halving; each halves the longest edges, so that these reach 1/4096 of the first. Where slivers share vertices, now or in a later
+/// round, twice as many.
 const ROUNDS: usize = 12;
 /// Rounds of halving where transfer bends: edges down to an eighth of the even ones are halved.
 const BEND_ROUNDS: i32 = 3;
@@ -63,7 +64,7 @@ pub(crate) fn refined<'a>(
     }
     let size = size(scene);
     if size > 0.0 && size < LEAST_SIZE {
-        let (size, least) = (format!("{size:.0e}"), "1e-8");
+        let (size, least) = (format!("{size:e}"), "1e-8");
         return Err(Error::TooSmall { scene: scene.name.clone(), size, least });
     }
     refine_watched(scene, settings, progress)
@@ -137,17 +138,16 @@ fn evenly(mut scene: Cow<'_, Scene>, longest: f32) -> Result<Cow<'_, Scene>, Err
     }
     let name = scene.name.clone();
     for mesh in &mut scene.to_mut().meshes {
-        // Edges that are turned get shorter, but not by half.
-        let rounds = if has_slivers(mesh, is_longer) { 2 * ROUNDS } else { ROUNDS };
-        for _ in 0..rounds {
-            if !has_longer(mesh) {
-                break;
+        let (mut round, mut most) = (0, ROUNDS);
+        while has_longer(mesh) {
+            if round == most {
+                return Err(too_fine(&name, mesh.triangles.len()));
             }
-            halve_shared(mesh, is_longer);
+            if halve_shared(mesh, is_longer).is_shared {
+                most = 2 * ROUNDS;
+            }
+            round += 1;
             check_count(&name, mesh)?;
-        }
-        if has_longer(mesh) {
-            return Err(too_fine(&name, mesh.triangles.len()));
         }
     }
     Ok(scene)
@@ -177,8 +177,8 @@ fn at_bends<'a>(
         }
         let name = scene.name.clone();
         for (index, mesh) in scene.to_mut().meshes.iter_mut().enumerate() {
-            let middles = halve_shared(mesh, |mesh, edge| bent.contains(&edge_place(mesh, edge)));
-            bends.halved(index, middles);
+            let halved = halve_shared(mesh, |mesh, edge| bent.contains(&edge_place(mesh, edge)));
+            bends.halved(index, halved.middles);
             check_count(&name, mesh)?;
         }
     }

@@ -24,12 +24,20 @@ const NONE: u32 = u32::MAX;
 /// More triangles than an edge of a plain surface has.
 const MANY: u32 = u32::MAX - 1;
 
+/// What became of a mesh whose edges were halved.
+pub(crate) struct Halved {
+    /// The new vertices by the edges that they halve.
+    pub(crate) middles: HashMap<Edge, u32>,
+    /// Whether slivers share some of them: edges that are turned get shorter, but not by half.
+    pub(crate) is_shared: bool,
+}
+
 /// [`halve`] that lets slivers of a flat surface share vertices: of edges that `wanted` names some are turned instead, towards the middles of
 /// others. A mesh of compact triangles is halved as there.
-pub(crate) fn halve_shared(mesh: &mut Mesh, wanted: impl Fn(&Mesh, Edge) -> bool) -> HashMap<Edge, u32> {
+pub(crate) fn halve_shared(mesh: &mut Mesh, wanted: impl Fn(&Mesh, Edge) -> bool) -> Halved {
     let slivers = slivers(mesh, &wanted);
     if slivers.len() < LEAST {
-        return halve(mesh, wanted);
+        return Halved { middles: halve(mesh, wanted), is_shared: false };
     }
     let shared: HashSet<Edge> = slivers.iter().copied().collect();
     let mut middles = halve(mesh, |mesh, edge| !shared.contains(&sorted(edge)) && wanted(mesh, edge));
@@ -39,12 +47,7 @@ pub(crate) fn halve_shared(mesh: &mut Mesh, wanted: impl Fn(&Mesh, Edge) -> bool
             middles.insert(edge, middle);
         }
     }
-    middles
-}
-
-/// Whether a mesh has so many slivers of these edges that they share vertices.
-pub(crate) fn has_slivers(mesh: &Mesh, wanted: impl Fn(&Mesh, Edge) -> bool) -> bool {
-    slivers(mesh, &wanted).len() >= LEAST
+    Halved { middles, is_shared: true }
 }
 
 /// The wanted edges inside of flat surfaces, the longest first, if many are long edges of slivers.

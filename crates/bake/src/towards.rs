@@ -86,9 +86,10 @@ fn split(
         let refined = refined.get_or_insert_with(|| scene.clone());
         known = refined.meshes.iter().map(|mesh| mesh.positions.len() as u32).collect();
         for (mesh, firsts) in refined.meshes.iter_mut().zip(&mut firsts) {
-            let middles = halve_shared(mesh, |mesh, edge| marked.contains(&edge_place(mesh, edge)));
+            let halved = halve_shared(mesh, |mesh, edge| marked.contains(&edge_place(mesh, edge)));
             firsts.resize(mesh.positions.len(), 0);
-            middles.into_iter().for_each(|([a, _], middle)| firsts[middle as usize] = firsts[a as usize]);
+            let middles = halved.middles.into_iter();
+            middles.for_each(|([a, _], middle)| firsts[middle as usize] = firsts[a as usize]);
             check_count(&scene.name, mesh)?;
         }
         if triangles(refined) > most {

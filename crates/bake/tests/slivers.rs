@@ -185,3 +185,20 @@ fn slivers_have_the_light_of_compact_ground_can_fail() {
     let [mean, _] = error(disc(1_000), Refine::Off);
     assert!(mean > 4.0 * control, "{mean}, compact {control}");
 }
+
+/// A fan of fewer slivers than share vertices before it is first cut: a rod of 1 m that ends in a point.
+fn rod() -> Mesh {
+    let rim = (0..=100).map(|k| vec3(1.0, 0.0, 2e-3 * (k as f32 / 100.0 - 0.5)));
+    let positions = std::iter::once(Vec3::ZERO).chain(rim).collect();
+    Mesh { positions, triangles: (1..=100).map(|k| [0, k, k + 1]).collect(), ..Mesh::default() }
+}
+
+/// Slivers may come to share vertices only after a round; the edges that are turned then take more rounds than halves do.
+#[test]
+fn slivers_that_come_later_are_split_to_the_end() {
+    let scene = Scene { meshes: vec![rod()], materials: vec![Material::default()], ..Scene::default() };
+    let edge = 1.0 / 4000.0;
+    let refined = bake::refine(&scene, &with(Refine::Edge(edge))).expect("it splits");
+    assert!(longest(&refined.meshes[0]) <= edge);
+    assert!((area(&refined.meshes[0]) / area(&scene.meshes[0]) - 1.0).abs() < 1e-4);
+}

@@ -4,8 +4,9 @@ mod support;
 
 use bake::{Extras, MapSettings, SheetSettings, TextureSettings};
 use coeff_io::{Bounces, Effect, Effects, Encoding, Prt, Quality, Settings};
+use glam::Vec3;
 use scene::lightmap::{ObjectOptions, objects};
-use scene::{Material, Scene};
+use scene::{Material, Mesh, Scene};
 use sh_math::hemisphere::Basis;
 
 /// A small metal ball over a plane, in another unit.
@@ -115,6 +116,12 @@ fn tiny_units_are_the_same_or_are_refused() {
     let error = openness(1e-20).expect_err("it is refused").to_string();
     assert!(error.contains("e-20 m across") && error.contains("scale it up to at least 1e-8 m"), "{error}");
     assert!(!error.contains('\n'));
+    // The size is never told as the least one.
+    let mut almost = Scene { meshes: vec![Mesh::default()], materials: vec![Material::default()], ..Scene::default() };
+    almost.meshes[0].positions = [[0.0; 3], [9.96e-9, 0.0, 0.0], [0.0, 9.96e-9, 0.0]].map(Vec3::from_array).to_vec();
+    almost.meshes[0].triangles.push([0, 1, 2]);
+    let error = bake::plan(&almost, &settings()).expect_err("it is refused").to_string();
+    assert!(error.contains("9.96e-9 m across"), "{error}");
 }
 
 /// The refusal is called for: squares of areas are nothing there.
