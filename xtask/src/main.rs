@@ -1,7 +1,8 @@
-//! The order of commands: `cargo xtask pipeline | ci | tidy | golden | bench`. Runs commands; holds no algorithm.
+//! The order of commands: `cargo xtask pipeline | ci | tidy | golden | compare | bench`. Runs commands; holds no algorithm.
 
 mod bench;
 mod ci;
+mod compare;
 mod golden;
 mod pipeline;
 mod run;
@@ -28,6 +29,8 @@ enum Task {
     /// Compares golden pictures with what is drawn today, or accepts it by name.
     #[command(subcommand)]
     Golden(golden::Act),
+    /// Compares the numbers of ten bakes by an older program with today's.
+    Compare(compare::Options),
     /// Runs the benchmarks; --record writes a dated record to docs/bench.
     Bench(bench::Options),
 }
@@ -38,6 +41,7 @@ fn main() -> anyhow::Result<()> {
         Task::Ci(options) => ci::run(&options),
         Task::Tidy => tidy::run(),
         Task::Golden(act) => golden::run(&act),
+        Task::Compare(options) => compare::run(&options),
         Task::Bench(options) => bench::run(&options),
     }
 }
