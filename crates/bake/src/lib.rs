@@ -72,7 +72,7 @@ pub use crate::volume::{VolumePlace, VolumeSettings, VolumeSteps};
 pub use error::Error;
 pub use extras::{Extras, FixedLight};
 pub use gloss::{Compression, TextureSettings};
-pub use price::{Price, price};
+pub use price::{Look, Price, price};
 pub use progress::{Progress, Stage};
 pub use receivers::{Receiver, Receivers};
 pub use refine::{refine, refine_watched};

@@ -35,7 +35,23 @@ pub struct Price {
     pub gloss: f64,
     /// Receivers that were tried.
     pub tried: u64,
+    /// How much of the sky they see, and those that nothing stands above.
+    pub looks: Vec<Look>,
 }
+
+/// How much of the sky some receivers of a mesh see. Those that face down are left out: the bottom of what stands on a floor sees none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Index of the mesh.
+    pub mesh: u32,
+    /// How many receivers it stands for.
+    pub receivers: f64,
+    /// First coefficient of their direct transfer.
+    pub first: f32,
+}
+
+/// Receivers whose normals point further down face down.
+const DOWN: f32 = -0.9;
 
 /// Decides which effects a scene calls for and tries a few hundred receivers; `now` tells the time since any fixed moment. What light maps,
 /// transfer textures and volumes take comes on top.
@@ -49,7 +65,8 @@ pub fn price(scene: &Scene, settings: &Settings, extras: &Extras, now: &dyn Fn()
     let prepared = prepare(scene, settings, extras)?;
     let preparation = (now() - began).as_secs_f64();
     let plan = prepared.plan.clone();
-    let mut price = Price { plan, preparation, visibility: 0.0, interreflection: 0.0, gloss: 0.0, tried: 0 };
+    let mut price =
+        Price { plan, preparation, visibility: 0.0, interreflection: 0.0, gloss: 0.0, tried: 0, looks: Vec::new() };
     if simulates(&price.plan, Effect::Visibility) && !prepared.traced.is_empty() {
         try_out(&prepared, settings, now, &mut price)?;
         price.gloss = gloss(&price);
@@ -87,6 +104,8 @@ fn try_out(
     let tried = seen.iter().map(|run| run.len() as u64).sum::<u64>();
     let scale = traced.len() as f64 / tried as f64;
     price.tried = tried;
+    let firsts = runs.iter().flatten().zip(seen.iter().flatten()).map(|(&id, one)| (id, one.transfer[0]));
+    price.looks = looks(prepared, &firsts.collect::<Vec<_>>(), scale);
     price.visibility = visibility * scale;
     let rays = |seen: &[Vec<Gathered>], of: fn(&Gathered) -> u64| seen.iter().flatten().map(of).sum::<u64>() as f64;
     set_rays(&mut price.plan, Effect::Visibility, rays(&seen, |g| g.visibility_rays) * scale);
@@ -112,6 +131,32 @@ fn try_out(
         price.interreflection = scale * (lookups + bounce * f64::from(plan.expected_bounces));
     }
     Ok(())
+}
+
+/// What the tried receivers see, each of which stands for `scale`, and for each mesh those of its vertices that are not traced.
+fn looks(prepared: &Prepared<'_>, tried: &[(u32, f32)], scale: f64) -> Vec<Look> {
+    let Prepared { world, receivers, traced, .. } = prepared;
+    let counts = world.scene.meshes.iter().map(|mesh| mesh.positions.len() as u32);
+    let ends: Vec<u32> = counts
+        .scan(0, |end, count| {
+            *end += count;
+            Some(*end)
+        })
+        .collect();
+    let mesh_of = |id: u32| ends.partition_point(|&end| end <= id) as u32;
+    let counts = |id: u32| (id as usize) < receivers.vertices && receivers.list[id as usize].normal.y >= DOWN;
+    let seen = tried.iter().filter(|(id, _)| counts(*id));
+    let mut looks: Vec<Look> = seen.map(|&(id, first)| Look { mesh: mesh_of(id), receivers: scale, first }).collect();
+    let mut is_traced = vec![false; receivers.permanent];
+    traced.iter().for_each(|&id| is_traced[id as usize] = true);
+    let mut open = vec![0.0; ends.len()];
+    let others = (0..receivers.vertices as u32).filter(|&id| counts(id) && !is_traced[id as usize]);
+    others.for_each(|id| open[mesh_of(id) as usize] += 1.0);
+    // All of the sky above the tangent plane.
+    let first = (0.25 / std::f64::consts::PI).sqrt() as f32;
+    let open = (0..).zip(open).filter(|(_, receivers)| *receivers > 0.0);
+    looks.extend(open.map(|(mesh, receivers)| Look { mesh, receivers, first }));
+    looks
 }
 
 /// Seconds of the rays of gloss at the speed of those that were tried.

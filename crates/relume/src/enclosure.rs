@@ -1,9 +1,10 @@
 //! Says so where no light of a probe gets into a scene.
 
 use crate::console::Console;
-use coeff_io::{AlphaMode, Plan, Prt, Quality};
+use ::bake::{Look, Price};
+use coeff_io::{Prt, Quality};
 use glam::Vec3;
-use scene::{Bounds, Mesh, Scene};
+use scene::{Bounds, Scene};
 
 /// Largest share of the sky that the receivers looked at may see on average where a scene counts as closed.
 const CLOSED: f32 = 5e-4;
@@ -17,8 +18,6 @@ const DARK: f64 = 0.8;
 const DARK_BY_FEW_RAYS: f64 = 0.99;
 /// Fewer rays than so many are few.
 const FEW_RAYS: u32 = 64;
-/// So many receivers that were looked at tell of the others.
-const MANY: u64 = 16;
 
 /// Warns where no light of a probe reaches what was baked, or all of it but the mesh around the rest.
 pub(crate) fn tell_of_bake(prt: &Prt, console: &Console) {
@@ -37,40 +36,69 @@ pub(crate) fn tell_of_picture(linear: &[[f32; 3]], console: &Console) {
     }
 }
 
-/// What is baked, as far as it takes light: its mesh, the box around that, and its vertices.
-struct Lit<'a> {
-    mesh: &'a coeff_io::Mesh,
-    bounds: Bounds,
-    vertices: std::ops::Range<usize>,
+/// A mesh that takes light, with the box around it.
+type Lit = (usize, Bounds);
+
+/// The largest mesh, and what it may keep the light from.
+struct Around {
+    outer: usize,
+    inner: Vec<usize>,
+    /// The middle of the others, where all of these lie within the box of the largest.
+    middle: Option<Vec3>,
+}
+
+fn around(lit: &[Lit]) -> Option<Around> {
+    // Backs come last.
+    let &(outer, bounds) = lit.iter().rev().max_by(|a, b| a.1.radius().total_cmp(&b.1.radius()))?;
+    let margin = 0.01 * bounds.size();
+    let (low, high) = (bounds.min - margin, bounds.max + margin);
+    // Its back is a mesh of its own where it is two-sided.
+    let others: Vec<&Lit> = lit.iter().filter(|one| one.1 != bounds).collect();
+    let within = others.iter().all(|one| low.cmple(one.1.min).all() && high.cmpge(one.1.max).all());
+    let middle = Bounds::of(others.iter().flat_map(|one| [one.1.min, one.1.max])).map(|b| b.center());
+    let inner = if within && !others.is_empty() { others } else { lit.iter().collect() };
+    Some(Around { outer, inner: inner.iter().map(|one| one.0).collect(), middle: middle.filter(|_| within) })
 }
 
 /// Names the largest mesh where nearly nothing in it gets light, whatever its own outside sees.
 fn shell(prt: &Prt) -> Option<String> {
-    let lit: Vec<Lit<'_>> = prt.meshes.iter().filter_map(|mesh| lit(prt, mesh)).collect();
-    // Backs come last.
-    let outer = lit.iter().rev().max_by(|a, b| a.bounds.radius().total_cmp(&b.bounds.radius()))?;
-    let margin = 0.01 * outer.bounds.size();
-    let (low, high) = (outer.bounds.min - margin, outer.bounds.max + margin);
-    // Its back is a mesh of its own where it is two-sided.
-    let others: Vec<&Lit<'_>> = lit.iter().filter(|one| one.bounds != outer.bounds).collect();
-    let within = others.iter().all(|one| low.cmple(one.bounds.min).all() && high.cmpge(one.bounds.max).all());
-    let apart = within && !others.is_empty();
-    let inner = if apart { others } else { lit.iter().collect() };
+    let lit: Vec<Lit> = prt.meshes.iter().enumerate().filter_map(|(k, mesh)| Some((k, lit(prt, mesh)?))).collect();
+    let Around { outer, inner, middle } = around(&lit)?;
     // A bottom in the plane of its floor counts as open, though it gets no light.
     let faces_down = |vertex: usize| prt.geometry.normals[vertex][1] < -0.9;
     let row = (prt.transfer.bands * prt.transfer.bands * prt.transfer.channels) as usize;
     let firsts: Vec<f32> = inner
         .iter()
-        .flat_map(|one| one.vertices.clone())
+        .flat_map(|&mesh| vertices(&prt.meshes[mesh]))
         .filter(|&vertex| !faces_down(vertex))
         .filter_map(|vertex| prt.transfer.values.get(vertex * row).map(|value| value.abs()))
         .collect();
     let dark = firsts.iter().filter(|value| **value <= CLOSED * OPEN).count();
     let is_dark = dark > 0 && dark as f64 >= dark_share(prt.settings.quality) * firsts.len() as f64;
     // What is shut into a body counts as buried in it, and is repaired.
-    let middle = Bounds::of(inner.iter().flat_map(|one| [one.bounds.min, one.bounds.max])).map(|b| b.center());
-    let is_shut = apart && middle.is_some_and(|middle| closes(prt, outer.mesh, middle));
-    (is_dark || is_shut).then(|| text(&outer.mesh.name, if is_shut { firsts.len() } else { dark } as u64))
+    let outer = &prt.meshes[outer];
+    let is_shut = middle.is_some_and(|middle| closes(prt, outer, middle));
+    (is_dark || is_shut).then(|| text(&outer.name, if is_shut { firsts.len() } else { dark } as u64))
+}
+
+/// The same before a bake, by the receivers that were tried.
+fn warning(scene: &Scene, price: &Price, quality: Quality) -> Option<String> {
+    let takes_light = |mesh: usize| {
+        let material = scene.material(mesh);
+        !material.unlit && material.base_color.truncate().max_element() > 0.0
+    };
+    let bounds = |mesh: usize| Some((mesh, scene.meshes[mesh].bounds()?));
+    let lit: Vec<Lit> = (0..scene.meshes.len()).filter(|&mesh| takes_light(mesh)).filter_map(bounds).collect();
+    let Around { outer, inner, middle } = around(&lit)?;
+    let looks = price.looks.iter().filter(|look| inner.contains(&(look.mesh as usize)));
+    let is_dark = |look: &&Look| look.first.abs() <= CLOSED * OPEN;
+    let all: f64 = looks.clone().map(|look| look.receivers).sum();
+    let dark: f64 = looks.clone().filter(is_dark).map(|look| look.receivers).sum();
+    let mesh = &scene.meshes[outer];
+    let corners = || mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize]));
+    let is_shut = middle.is_some_and(|middle| is_opaque(scene.material(outer)) && is_closed_around(corners(), middle));
+    let told = if is_shut { looks.count() } else { looks.filter(is_dark).count() };
+    (is_shut || dark > 0.0 && dark >= dark_share(quality) * all).then(|| text(&mesh.name, told as u64))
 }
 
 /// Share of the receivers that get no light where a scene counts as closed, by how well each looked.
@@ -83,22 +111,32 @@ fn dark_share(quality: Quality) -> f64 {
 
 /// Whether an opaque mesh is closed around a point.
 fn closes(prt: &Prt, mesh: &coeff_io::Mesh, point: Vec3) -> bool {
-    let material = &prt.materials[mesh.material as usize];
     let (first, count) = (mesh.first_triangle as usize, mesh.triangles as usize);
     let triangles = prt.geometry.triangles.get(first..first + count).unwrap_or_default();
     let corners = triangles.iter().map(|t| t.map(|v| Vec3::from(prt.geometry.positions[v as usize])));
-    let opaque = material.alpha == AlphaMode::Opaque && material.transmission == 0.0;
-    opaque && scene::share_of_sphere(corners, point) > 0.999
+    let material = &prt.materials[mesh.material as usize];
+    let is_opaque = material.alpha == coeff_io::AlphaMode::Opaque && material.transmission == 0.0;
+    is_opaque && is_closed_around(corners, point)
 }
 
-/// A mesh that takes light: what is black or unlit is not traced.
-fn lit<'a>(prt: &Prt, mesh: &'a coeff_io::Mesh) -> Option<Lit<'a>> {
+fn is_opaque(material: &scene::Material) -> bool {
+    material.alpha == scene::AlphaMode::Opaque && material.transmission == 0.0
+}
+
+fn is_closed_around(triangles: impl Iterator<Item = [Vec3; 3]>, point: Vec3) -> bool {
+    scene::share_of_sphere(triangles, point) > 0.999
+}
+
+fn vertices(mesh: &coeff_io::Mesh) -> std::ops::Range<usize> {
+    mesh.first_vertex as usize..(mesh.first_vertex + mesh.vertices) as usize
+}
+
+/// The box around a mesh that takes light: what is black or unlit is not traced.
+fn lit(prt: &Prt, mesh: &coeff_io::Mesh) -> Option<Bounds> {
     let material = prt.materials.get(mesh.material as usize)?;
     let takes_light = !material.unlit && material.base_color[..3].iter().any(|c| *c > 0.0);
-    let vertices = mesh.first_vertex as usize..(mesh.first_vertex + mesh.vertices) as usize;
-    let points = prt.geometry.positions.get(vertices.clone()).filter(|_| takes_light)?;
-    let bounds = Bounds::of(points.iter().map(|&p| p.into()))?;
-    Some(Lit { mesh, bounds, vertices })
+    let points = prt.geometry.positions.get(vertices(mesh)).filter(|_| takes_light)?;
+    Bounds::of(points.iter().map(|&p| p.into()))
 }
 
 fn text(name: &str, receivers: u64) -> String {
@@ -109,34 +147,24 @@ fn text(name: &str, receivers: u64) -> String {
     )
 }
 
-/// Warns where no receiver that the plan looked at sees the sky.
-pub(crate) fn tell(scene: &Scene, plan: &Plan, console: &Console) {
-    if let Some(text) = warning(scene, plan) {
+/// Warns before a bake where one would.
+pub(crate) fn tell(scene: &Scene, price: &Price, quality: Quality, console: &Console) {
+    if let Some(text) = warning(scene, price, quality) {
         console.notice(&text);
     }
-}
-
-fn warning(scene: &Scene, plan: &Plan) -> Option<String> {
-    let survey = &plan.survey;
-    // Where some receivers are open without a ray the scene is not closed; what stands on a floor may be.
-    let few = survey.receivers < MANY && plan.shadowed_receivers < plan.receivers;
-    let open = few || 10 * plan.shadowed_receivers < 9 * plan.receivers;
-    if survey.receivers == 0 || open || 1.0 - survey.coverage[0] > CLOSED {
-        return None;
-    }
-    let size = |mesh: &&Mesh| mesh.bounds().map_or(0.0, |bounds| bounds.radius());
-    let largest = scene.meshes.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
-    Some(text(&largest.name, survey.receivers))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ::bake::Extras;
+    use std::time::Duration;
 
     fn told(name: &str) -> Option<String> {
         let scene = scene::builtin(name).expect("a builtin");
-        let plan = ::bake::plan(&scene, &::bake::settings::preview()).expect("it plans");
-        warning(&scene, &plan)
+        let settings = ::bake::settings::preview();
+        let price = ::bake::price(&scene, &settings, &Extras::default(), &|| Duration::ZERO).expect("it plans");
+        warning(&scene, &price, settings.quality)
     }
 
     #[test]

@@ -81,7 +81,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         text
     };
     console.print(&text)?;
-    crate::enclosure::tell(&scene, &price.plan, console);
+    crate::enclosure::tell(&scene, &price, settings.quality, console);
     console.next(&options.scene.bake_command());
     Ok(())
 }

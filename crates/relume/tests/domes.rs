@@ -160,6 +160,8 @@ fn what_shuts_a_scene_in_is_named() {
     ] {
         let (said, pixels) = scene(folder, 3.0, vec![("Shell", shape, look)]);
         assert!(said.contains("warning: Shell: encloses"), "{what}: {said}");
+        let planned = complaint(&relume(folder, &[&["plan", "a.gltf"][..], &QUICK].concat()));
+        assert!(planned.contains("warning: Shell: encloses"), "{what}: {planned}");
         // Where its inside is not drawn, the sky is behind.
         let black = pixels.as_flattened().iter().all(|v| *v == 0.0);
         assert_eq!(black, shows_inside, "{what}");
@@ -173,6 +175,8 @@ fn shells_and_domes_can_fail() {
     let folder = folder.path();
     let (said, control) = scene(folder, 3.0, Vec::new());
     assert!(!["encloses", "left out", "black"].iter().any(|word| said.contains(word)), "{said}");
+    let planned = complaint(&relume(folder, &[&["plan", "a.gltf"][..], &QUICK].concat()));
+    assert!(!planned.contains("encloses"), "{planned}");
     let open = Shape::cuboid([-4.0, 0.0, -4.0], [4.0, 3.0, 4.0]).turned();
     let open = Shape { triangles: [&open.triangles[..6], &open.triangles[8..]].concat(), ..open };
     let (said, pixels) = scene(folder, 3.0, vec![("Shell", open, material([0.7; 3], json!({})))]);
