@@ -32,8 +32,10 @@ pub(super) struct Found {
 /// Rows of several tables that share a codebook.
 struct Rows {
     columns: usize,
-    /// `[table]`, each `[row][column]`.
-    sets: Vec<Vec<f32>>,
+    /// `[table][row][column]`.
+    values: Vec<f32>,
+    /// Where each table ends in the values.
+    ends: Vec<usize>,
 }
 
 /// Tables with their codebook and the relative error that clusters added.
@@ -43,31 +45,13 @@ struct Coded {
     error: f32,
 }
 
-pub(super) fn write(job: &Job<'_>, maker: &RowMaker<'_>, found: Found, mut record: GlossRecord, prt: &mut Prt) {
+pub(super) fn write(job: &Job<'_>, maker: &RowMaker<'_>, mut found: Found, mut record: GlossRecord, prt: &mut Prt) {
     let aim = job.extras.compression.rows;
-    let levels: Vec<Level<'_>> =
-        found.baked.iter().flat_map(|sheet| sheet.levels.iter().map(|plate| Level::of(plate, sheet.layout))).collect();
-    let at_vertices = maker.layout(false, true);
-    let vertex_rows = |range: Range<usize>| columns_of(&found.rows, at_vertices.len(), range);
-    let has_vertices = !found.vertices.ids.is_empty();
-
-    let mut diffuse = Rows { columns: job.light.coefficients() * maker.channels, sets: Vec::new() };
     let with_vertices = aim.is_some() && maker.channels == prt.transfer.channels as usize;
-    if with_vertices {
-        diffuse.sets.push(prt.transfer.values.clone());
-    }
-    diffuse.sets.extend(levels.iter().map(|level| level.rows(0..level.layout.diffuse)));
-    let mut visibility = Rows { columns: job.gloss.coefficients(), sets: Vec::new() };
-    let mut bounces = Rows { columns: at_vertices.bounce, sets: Vec::new() };
-    if has_vertices {
-        visibility.sets.push(vertex_rows(at_vertices.visibility()));
-        bounces.sets.extend((0..at_vertices.tables).map(|t| vertex_rows(at_vertices.bounces(t))));
-    }
-    for level in levels.iter().filter(|level| level.layout.visibility > 0) {
-        visibility.sets.push(level.rows(level.layout.visibility()));
-        bounces.sets.extend((0..level.layout.tables).map(|t| level.rows(level.layout.bounces(t))));
-    }
-    record.bytes[0] = 4 * (diffuse.numbers() + visibility.numbers()) as u64 + long_bytes(maker, &bounces);
+    let of_vertices = with_vertices.then_some(&prt.transfer.values[..]);
+    let [diffuse, visibility, bounces] = take_rows(job, maker, &mut found, of_vertices);
+    let has_vertices = !found.vertices.ids.is_empty();
+    record.bytes[0] = 4 * (diffuse.values.len() + visibility.values.len()) as u64 + long_bytes(maker, &bounces);
 
     let mut diffuse = diffuse.coded(aim);
     let mut visibility = visibility.coded(aim);
@@ -99,6 +83,7 @@ pub(super) fn write(job: &Job<'_>, maker: &RowMaker<'_>, found: Found, mut recor
     };
     let vertices = has_vertices.then(|| VertexGloss { first_row: found.vertices.first_row, arriving: arriving() });
     let mut sheets = Vec::new();
+    let levels = levels(&found.baked);
     let mut remaining = levels.iter();
     for sheet in &found.baked {
         let own = remaining.by_ref().take(sheet.levels.len());
@@ -134,9 +119,44 @@ pub(super) fn write(job: &Job<'_>, maker: &RowMaker<'_>, found: Found, mut recor
     prt.achieved.gloss = Some(record);
 }
 
+/// The rows of vertices that shine and of all levels by what they tell of: light for normals, visibility, bounces. The first begins with those
+/// of `vertices` that share its clusters. Rows leave their sheets, lest they are there twice while clusters are made.
+fn take_rows(job: &Job<'_>, maker: &RowMaker<'_>, found: &mut Found, vertices: Option<&[f32]>) -> [Rows; 3] {
+    let at_vertices = maker.layout(false, true);
+    let columns = [job.light.coefficients() * maker.channels, job.gloss.coefficients(), at_vertices.bounce];
+    let mut all = columns.map(|columns| Rows { columns, values: Vec::new(), ends: Vec::new() });
+    let [diffuse, visibility, bounces] = &mut all;
+    if let Some(rows) = vertices {
+        diffuse.add(rows.iter());
+    }
+    if !found.vertices.ids.is_empty() {
+        let rows = |range| columns_of(&found.rows, at_vertices.len(), range);
+        visibility.add(rows(at_vertices.visibility()));
+        (0..at_vertices.tables).for_each(|t| bounces.add(rows(at_vertices.bounces(t))));
+    }
+    found.rows = Vec::new();
+    for sheet in &mut found.baked {
+        for plate in &mut sheet.levels {
+            let level = Level::of(plate, sheet.layout);
+            diffuse.add(level.rows(0..level.layout.diffuse));
+            if level.layout.visibility > 0 {
+                visibility.add(level.rows(level.layout.visibility()));
+                (0..level.layout.tables).for_each(|t| bounces.add(level.rows(level.layout.bounces(t))));
+            }
+            plate.values = Vec::new();
+        }
+    }
+    all
+}
+
+/// The levels of all sheets.
+fn levels(baked: &[BakedSheet]) -> Vec<Level<'_>> {
+    baked.iter().flat_map(|sheet| sheet.levels.iter().map(|plate| Level::of(plate, sheet.layout))).collect()
+}
+
 /// Bytes of the bounces as f32 in full.
 fn long_bytes(maker: &RowMaker<'_>, bounces: &Rows) -> u64 {
-    let rows = bounces.numbers() / bounces.columns.max(1);
+    let rows = bounces.values.len() / bounces.columns.max(1);
     let long = if matches!(maker.bouncing, Bouncing::Sketched(_)) { maker.long() } else { bounces.columns };
     4 * rows as u64 * long as u64
 }
@@ -160,26 +180,32 @@ impl<'a> Level<'a> {
         self.order.iter().map(|&slot| self.plate.texel_of[slot as usize]).collect()
     }
 
-    fn rows(&self, range: Range<usize>) -> Vec<f32> {
-        let row = |&slot: &u32| &self.plate.values[slot as usize * self.plate.row_len..][range.clone()];
-        self.order.iter().flat_map(row).copied().collect()
+    fn rows(&self, range: Range<usize>) -> impl Iterator<Item = &f32> {
+        self.order.iter().flat_map(move |&slot| &self.plate.values[slot as usize * self.plate.row_len..][range.clone()])
     }
 }
 
-fn columns_of(rows: &[f32], row_len: usize, range: Range<usize>) -> Vec<f32> {
-    rows.chunks_exact(row_len.max(1)).flat_map(|row| &row[range.clone()]).copied().collect()
+fn columns_of(rows: &[f32], row_len: usize, range: Range<usize>) -> impl Iterator<Item = &f32> {
+    rows.chunks_exact(row_len.max(1)).flat_map(move |row| &row[range.clone()])
 }
 
 impl Rows {
-    fn numbers(&self) -> usize {
-        self.sets.iter().map(Vec::len).sum()
+    /// Adds the rows of one table.
+    fn add<'a>(&mut self, rows: impl Iterator<Item = &'a f32>) {
+        self.values.extend(rows);
+        self.ends.push(self.values.len());
+    }
+
+    /// Of each table where it begins and ends in the values.
+    fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
+        self.ends.iter().scan(0, |start, &end| Some(std::mem::replace(start, end)..end))
     }
 
     /// Tables in clusters to within a relative error, or in halves where none is given or clusters would take more.
     fn coded(self, error: Option<f32>) -> Coded {
-        let all = error.filter(|_| self.numbers() > 0).and_then(|error| {
+        let all = error.filter(|_| !self.values.is_empty()).and_then(|error| {
             let aim = Aim { error, most_clusters: MOST_CLUSTERS, most_rank: MOST_RANK };
-            compress(&self.sets.concat(), self.columns, &aim)
+            compress(&self.values, self.columns, &aim)
         });
         match all {
             Some(all) => {
@@ -187,33 +213,31 @@ impl Rows {
                 Coded { book: Some(all.book), tables: tables.into_iter(), error: all.error }
             }
             None => {
-                let half = |rows: &Vec<f32>| Table::half(self.columns as u32, rows);
-                Coded { book: None, tables: self.sets.iter().map(half).collect::<Vec<_>>().into_iter(), error: 0.0 }
+                let half = |range| Table::half(self.columns as u32, &self.values[range]);
+                Coded { book: None, tables: self.ranges().map(half).collect::<Vec<_>>().into_iter(), error: 0.0 }
             }
         }
     }
 
     /// Rows that are kept by the vectors of a sketch: always by a codebook, in the worst case that of the sketch itself.
     fn coded_sketched(self, sketch: &crate::compress::Sketch, error: f32, sketched: f32) -> Coded {
-        if self.sets.is_empty() {
+        if self.ends.is_empty() {
             return Coded { book: None, tables: Vec::new().into_iter(), error: 0.0 };
         }
         let aim = Aim { error, most_clusters: MOST_CLUSTERS, most_rank: MOST_RANK };
-        let all = compress_sketched(&self.sets.concat(), sketch, &aim);
+        let all = compress_sketched(&self.values, sketch, &aim);
         let tables = self.split(&all.book, &all.clusters, &all.weights);
         let error = (all.error * all.error + sketched * sketched).sqrt();
         Coded { book: Some(all.book), tables: tables.into_iter(), error }
     }
 
     fn split(&self, book: &Codebook, clusters: &[u16], weights: &[f32]) -> Vec<Table> {
-        let (mut row, rank) = (0, book.rank as usize);
-        let table = |set: &Vec<f32>| {
-            let rows = set.len() / self.columns;
-            let range = row..row + rows;
-            row += rows;
-            Table::clustered(book, &clusters[range.clone()], &weights[range.start * rank..range.end * rank])
+        let rank = book.rank as usize;
+        let table = |range: Range<usize>| {
+            let [start, end] = [range.start, range.end].map(|at| at / self.columns);
+            Table::clustered(book, &clusters[start..end], &weights[start * rank..end * rank])
         };
-        self.sets.iter().map(table).collect()
+        self.ranges().map(table).collect()
     }
 }
 

@@ -5,6 +5,7 @@ use super::stitch::{Agreement, Part, stitch};
 use crate::extras::Done;
 use glam::Vec2;
 use scene::lightmap::seams;
+use std::collections::BTreeSet;
 
 /// Look-ups to a texel along a seam.
 const PER_TEXEL: f32 = 2.0;
@@ -26,7 +27,7 @@ pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], parts: 
             .map(|(slot, weight)| (slot + first_slot[sheet], weight))
             .collect()
     };
-    let mut agreements = Vec::new();
+    let mut agreements: Vec<Agreement> = Vec::new();
     for seam in seams(done.scene, &meshes) {
         let length = |side: &scene::lightmap::SeamSide| {
             let plate = &plates[sheet_of(side.mesh)];
@@ -47,15 +48,26 @@ pub(crate) fn stitch_all(done: &Done<'_>, sheet_of_mesh: &[Option<u32>], parts: 
         }
     }
     let Some(row_len) = plates.first().map(|plate| plate.row_len) else { return };
-    let mut values: Vec<f32> = plates.iter_mut().flat_map(|plate| std::mem::take(&mut plate.values)).collect();
-    let unseen =
-        plates.iter().zip(&first_slot).flat_map(|(plate, first)| plate.unseen.iter().map(move |slot| slot + first));
-    stitch(&agreements, &unseen.collect(), (parts, row_len), &mut values);
-    let mut rest = &values[..];
-    for plate in plates {
-        let (own, others) = rest.split_at(plate.slots() * row_len);
-        plate.values = own.to_vec();
-        rest = others;
+    let unseen: BTreeSet<u32> = (plates.iter().zip(&first_slot))
+        .flat_map(|(plate, first)| plate.unseen.iter().map(move |slot| slot + first))
+        .collect();
+    // Rows along seams alone are taken out: all together would be there twice.
+    let mut place_of = vec![NONE; first_slot[first_slot.len() - 1] as usize];
+    agreements.iter().flatten().for_each(|&(slot, _)| place_of[slot as usize] = 0);
+    let slots: Vec<u32> = (0..place_of.len() as u32).filter(|&slot| place_of[slot as usize] != NONE).collect();
+    (0..).zip(&slots).for_each(|(place, &slot)| place_of[slot as usize] = place);
+    agreements.iter_mut().flatten().for_each(|(slot, _)| *slot = place_of[*slot as usize]);
+    let unseen = (0..).zip(&slots).filter(|(_, slot)| unseen.contains(slot)).map(|(place, _)| place).collect();
+    let sheet = |slot: u32| first_slot.partition_point(|&first| first <= slot) - 1;
+    let range = |slot: u32| {
+        let start = (slot - first_slot[sheet(slot)]) as usize * row_len;
+        start..start + row_len
+    };
+    let row = |&slot: &u32| &plates[sheet(slot)].values[range(slot)];
+    let mut values: Vec<f32> = slots.iter().flat_map(row).copied().collect();
+    stitch(&agreements, &unseen, (parts, row_len), &mut values);
+    for (&slot, row) in slots.iter().zip(values.chunks_exact(row_len)) {
+        plates[sheet(slot)].values[range(slot)].copy_from_slice(row);
     }
 }
 

@@ -40,7 +40,9 @@ pub(crate) fn stitch(
     let mut slots: Vec<u32> = agreements.iter().flatten().map(|&(slot, _)| slot).collect();
     slots.sort_unstable();
     slots.dedup();
-    let local = |slot: u32| slots.binary_search(&slot).expect("listed") as u32;
+    let mut place_of = vec![0; slots.last().map_or(0, |&slot| slot as usize + 1)];
+    (0..).zip(&slots).for_each(|(place, &slot)| place_of[slot as usize] = place);
+    let local = |slot: u32| place_of[slot as usize];
     let rows: Vec<Agreement> =
         agreements.iter().map(|row| row.iter().map(|&(slot, weight)| (local(slot), weight)).collect()).collect();
     let stay: Vec<f32> = slots.iter().map(|slot| if unseen.contains(slot) { YIELD } else { STAY }).collect();
