@@ -174,14 +174,10 @@ impl Done<'_> {
         (self.settings.bounces != Bounces::Fixed(0)).then_some(Shine { mirrors, direct })
     }
 
-    /// Shares of the corners of a triangle at a texel of a chart that shows by less than a texel: it shows beside its lit corners, the others are
-    /// what hides the rest of it.
-    fn shares_of_lit(&self, vertices: [u32; 3], shares: [f32; 3]) -> [f32; 3] {
-        let first = vertices.map(|vertex| self.transfer.channel(vertex, 0).first().map_or(0.0, |t| t.abs()));
-        let brightest = first.into_iter().fold(0.0, f32::max);
-        let lit = [0, 1, 2].map(|k| if first[k] < HIDDEN * brightest { 0.0 } else { shares[k].max(FEWEST_SHARE) });
-        let sum: f32 = lit.into_iter().sum();
-        if sum > 0.0 && brightest > 0.0 { lit.map(|share| share / sum) } else { shares }
+    /// What a vertex takes of light from all sides, in its brightest channel: between green walls red tells nothing.
+    fn brightness(&self, vertex: u32) -> f32 {
+        let first = |channel| self.transfer.channel(vertex, channel).first().map_or(0.0, |t| t.abs());
+        (0..self.transfer.channels).map(first).fold(0.0, f32::max)
     }
 
     /// Adds what the vertices around a texel take, times a factor, by `[coefficient of the light][channel]`: under a fixed light one number for
@@ -197,7 +193,7 @@ impl Done<'_> {
         let corners = self.scene.meshes[texel.mesh as usize].triangles[texel.triangle as usize];
         let [u, v] = texel.barycentrics;
         let vertices = corners.map(|corner| first as u32 + corner);
-        let shares = self.shares_of_lit(vertices, [1.0 - u - v, u, v]);
+        let shares = shares_of_lit(vertices.map(|vertex| self.brightness(vertex)), [1.0 - u - v, u, v]);
         for (vertex, share) in vertices.into_iter().zip(shares) {
             for channel in 0..channels {
                 let own = channel.min(self.transfer.channels - 1);
@@ -227,5 +223,34 @@ impl Done<'_> {
         }
         crate::gloss::bake(self, extras, prt)?;
         Ok(())
+    }
+}
+
+/// Shares of the corners of a triangle at a texel of a chart that shows by less than a texel: it shows beside its lit corners, the others are
+/// what hides the rest of it.
+fn shares_of_lit(brightness: [f32; 3], shares: [f32; 3]) -> [f32; 3] {
+    let brightest = brightness.into_iter().fold(0.0, f32::max);
+    let lit = [0, 1, 2].map(|k| if brightness[k] < HIDDEN * brightest { 0.0 } else { shares[k].max(FEWEST_SHARE) });
+    let sum: f32 = lit.into_iter().sum();
+    if sum > 0.0 && brightest > 0.0 { lit.map(|share| share / sum) } else { shares }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shares_of_lit;
+
+    /// A corner in the dark takes no part, nor do shares that rounding made negative; in even light all stay.
+    #[test]
+    fn corners_in_the_dark_take_no_part() {
+        assert_eq!(shares_of_lit([0.0, 0.2, 0.3], [0.5, 0.25, 0.25]), [0.0, 0.5, 0.5]);
+        assert_eq!(shares_of_lit([0.2, 0.2, 0.3], [0.5, 0.25, 0.25]), [0.5, 0.25, 0.25]);
+        let beside = shares_of_lit([0.0, 0.2, 0.3], [1.1, -0.1, 0.0]);
+        assert!(beside[1..].iter().all(|share| (share - 0.5).abs() < 1e-6), "{beside:?}");
+    }
+
+    /// A channel in which no corner has light tells nothing of the dark of one.
+    #[test]
+    fn corners_in_the_dark_take_no_part_can_fail() {
+        assert_eq!(shares_of_lit([0.0; 3], [0.5, 0.25, 0.25]), [0.5, 0.25, 0.25]);
     }
 }
