@@ -153,9 +153,10 @@ fn solve(rows: &Matrix, before: Vec<[f32; LANES]>, stay: &[f32]) -> Vec<[f32; LA
         if next.iter().zip(first).all(|(&now, first)| now <= ENOUGH * ENOUGH * first) {
             break;
         }
+        let again: [f32; LANES] = std::array::from_fn(|k| ratio(next[k], norm[k]));
         for (p, r) in direction.iter_mut().zip(&residual) {
             for k in 0..LANES {
-                p[k] = r[k] + ratio(next[k], norm[k]) * p[k];
+                p[k] = r[k] + again[k] * p[k];
             }
         }
         norm = next;
