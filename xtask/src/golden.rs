@@ -28,6 +28,6 @@ pub(crate) fn run(act: &Act) -> Result<()> {
     let mut settings = Vec::new();
     settings.extend(name.map(|name| ("RELUME_GOLDEN", name)));
     settings.extend(bless.then_some(("RELUME_BLESS", "1")));
-    let test = ["test", "--release", "--package", "relume", "--test", "golden", "--", "pictures_are_as_they_were"];
+    let test = ["test", "--release", "--package", "relume-cli", "--test", "golden", "--", "pictures_are_as_they_were"];
     command::run_with(&settings, &cargo(), &test)
 }

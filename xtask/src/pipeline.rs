@@ -25,7 +25,7 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<()> {
     let out = root().join(&options.out);
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
-    command::run(&cargo(), &["build", "--release", "--package", "relume"])?;
+    command::run(&cargo(), &["build", "--release", "--package", "relume-cli"])?;
     let relume = relume();
     let stem = stem(&options.scene);
     let path = |suffix: &str| options.out.join(format!("{stem}{suffix}")).display().to_string();

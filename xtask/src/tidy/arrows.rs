@@ -16,7 +16,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("render-cpu", &["sh-math", "raytrace", "probe-io", "coeff-io"]),
     ("render-wgpu", &["sh-math", "probe-io", "coeff-io"]),
     ("study", EVERYTHING),
-    ("relume", WITH_STUDY),
+    ("relume", LIBRARY),
+    ("relume-cli", WITH_STUDY),
 ];
 const EVERYTHING: &[&str] = &[
     "sh-math",
@@ -30,6 +31,8 @@ const EVERYTHING: &[&str] = &[
     "render-cpu",
     "render-wgpu",
 ];
+/// What the library re-exports and calls: all that a program needs, without the path tracer and the studies.
+const LIBRARY: &[&str] = &["sh-math", "scene", "probe-io", "coeff-io", "bake", "render-cpu", "render-wgpu"];
 const WITH_STUDY: &[&str] = &[
     "sh-math",
     "sampling",
@@ -42,11 +45,12 @@ const WITH_STUDY: &[&str] = &[
     "render-cpu",
     "render-wgpu",
     "study",
+    "relume",
 ];
 /// Crates of others that only some crates of the house may use.
 const RESERVED: &[(&str, &[&str])] = &[
     ("wgpu", &["render-wgpu"]),
-    ("rayon", &["bake", "reference", "render-cpu", "study", "relume"]),
+    ("rayon", &["bake", "reference", "render-cpu", "study", "relume-cli"]),
     ("gltf", &["scene"]),
 ];
 
