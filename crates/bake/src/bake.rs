@@ -15,7 +15,7 @@ use crate::passes::{Chunk, Monitor, gather_pass};
 use crate::plan::{Prepared, prepare, simulates, tolerance};
 use crate::progress::{Progress, Stage};
 use crate::receivers::Receivers;
-use crate::refine::refined;
+use crate::refine::{check_size, refined};
 use crate::repair::{Finding, Repair, emerge};
 use crate::summary::summarise;
 use crate::wanted::Wanted;
@@ -67,11 +67,27 @@ pub fn bake(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Res
 /// # Errors
 /// As [`bake`].
 pub fn bake_with(scene: &Scene, settings: &Settings, extras: &Extras, progress: ProgressFn<'_>) -> Result<Prt, Error> {
+    settings::check(settings)?;
+    bake_refined(&*refined(scene, settings, progress)?, settings, extras, progress)
+}
+
+/// [`bake_with`] of a scene that was split before under the same settings, as by [`crate::refine`]: it is not split again.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_refined(
+    scene: &Scene,
+    settings: &Settings,
+    extras: &Extras,
+    progress: ProgressFn<'_>,
+) -> Result<Prt, Error> {
+    settings::check(settings)?;
+    check_size(scene)?;
     let (prt, ()) = bake_then(scene, settings, extras, progress, |done, prt| done.add(extras, prt))?;
     Ok(prt)
 }
 
-/// Bakes the vertices, and hands what is known by then to `then`.
+/// Bakes the vertices of a scene that is split, and hands what is known by then to `then`.
 pub(crate) fn bake_then<T>(
     scene: &Scene,
     settings: &Settings,
@@ -79,8 +95,6 @@ pub(crate) fn bake_then<T>(
     progress: ProgressFn<'_>,
     then: impl FnOnce(&Done<'_>, &mut Prt) -> Result<T, Error>,
 ) -> Result<(Prt, T), Error> {
-    settings::check(settings)?;
-    let scene = &*refined(scene, settings, progress)?;
     let monitor = Monitor::new(progress);
     monitor.begin(Stage::Preparation, 1);
     monitor.check()?;

@@ -66,7 +66,7 @@ mod volume;
 mod wanted;
 mod world;
 
-pub use crate::bake::{ProgressFn, bake, bake_with, plan, plan_with};
+pub use crate::bake::{ProgressFn, bake, bake_refined, bake_with, plan, plan_with};
 pub use crate::maps::{Directional, DirectionalTexel, MapSettings, SheetSettings, directional};
 pub use crate::volume::{VolumePlace, VolumeSettings, VolumeSteps};
 pub use error::Error;

@@ -59,6 +59,12 @@ pub(crate) fn refined<'a>(
     settings: &Settings,
     progress: ProgressFn<'_>,
 ) -> Result<Cow<'a, Scene>, Error> {
+    check_size(scene)?;
+    refine_watched(scene, settings, progress)
+}
+
+/// Refuses scenes without triangles and those too small for single precision.
+pub(crate) fn check_size(scene: &Scene) -> Result<(), Error> {
     if scene.meshes.iter().all(|m| m.triangles.is_empty()) {
         return Err(Error::EmptyScene { scene: scene.name.clone() });
     }
@@ -67,7 +73,7 @@ pub(crate) fn refined<'a>(
         let (size, least) = (format!("{size:e}"), "1e-8");
         return Err(Error::TooSmall { scene: scene.name.clone(), size, least });
     }
-    refine_watched(scene, settings, progress)
+    Ok(())
 }
 
 /// Largest extent of the vertices, metres; what is not finite does not count.
@@ -85,31 +91,55 @@ pub fn refine_watched<'a>(
     settings: &Settings,
     progress: ProgressFn<'_>,
 ) -> Result<Cow<'a, Scene>, Error> {
-    settings::check(settings)?;
-    match settings.refine {
-        Refine::Off => Ok(Cow::Borrowed(scene)),
-        Refine::Edge(longest) => evenly(joined(scene, longest), longest),
-        Refine::Auto => {
-            if !allowed(settings, Effect::Visibility) {
-                return Ok(Cow::Borrowed(scene));
-            }
-            let monitor = Monitor::new(progress);
-            monitor.begin(Stage::Preparation, 1);
-            monitor.check()?;
-            let facts = Facts::of_materials(scene, settings, false);
-            let world = world(scene, &facts, settings)?;
-            if !has_shadows(scene, &world) {
-                return Ok(Cow::Borrowed(scene));
-            }
-            let longest = even_edge(scene);
-            let small = cubes(scene, &|m| facts.materials[m].blocks, SMALL.map(|part| part * longest));
-            let joined = joined(scene, longest * 0.5f32.powi(BEND_ROUNDS));
-            let (refined, small) = towards(evenly(joined, longest)?, Proximity::new(small))?;
-            let bends = Bends::new(&world, &refined, settings);
-            let split = at_bends(refined, longest, &small, bends, &monitor)?;
-            let split = cut_at_exits(split, &world, settings, &monitor)?;
-            cut_at_contacts(split, &world, (settings, longest * 0.5f32.powi(BEND_ROUNDS)), &monitor)
+    Halved::new(scene, settings, progress)?.cut(settings, progress)
+}
+
+/// A scene with its edges halved, and not yet cut where surfaces come out of bodies or from under covers.
+pub(crate) struct Halved<'a> {
+    scene: Cow<'a, Scene>,
+    /// The surfaces, where more is to be cut, and the longest edge that was halved only where transfer bends.
+    rest: Option<(World<'a>, f32)>,
+}
+
+impl<'a> Halved<'a> {
+    /// Halves the edges of a scene that is not empty.
+    pub(crate) fn new(scene: &'a Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<Self, Error> {
+        settings::check(settings)?;
+        let done = |scene| Ok(Self { scene, rest: None });
+        match settings.refine {
+            Refine::Off => return done(Cow::Borrowed(scene)),
+            Refine::Edge(longest) => return done(evenly(joined(scene, longest), longest)?),
+            Refine::Auto if !allowed(settings, Effect::Visibility) => return done(Cow::Borrowed(scene)),
+            Refine::Auto => (),
         }
+        let monitor = Monitor::new(progress);
+        monitor.begin(Stage::Preparation, 1);
+        monitor.check()?;
+        let facts = Facts::of_materials(scene, settings, false);
+        let world = world(scene, &facts, settings)?;
+        if !has_shadows(scene, &world) {
+            return done(Cow::Borrowed(scene));
+        }
+        let longest = even_edge(scene);
+        let small = cubes(scene, &|m| facts.materials[m].blocks, SMALL.map(|part| part * longest));
+        let joined = joined(scene, longest * 0.5f32.powi(BEND_ROUNDS));
+        let (refined, small) = towards(evenly(joined, longest)?, Proximity::new(small))?;
+        let bends = Bends::new(&world, &refined, settings);
+        let scene = at_bends(refined, longest, &small, bends, &monitor)?;
+        Ok(Self { scene, rest: Some((world, longest)) })
+    }
+
+    /// The scene so far.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The scene with the rest of its cuts.
+    pub(crate) fn cut(self, settings: &Settings, progress: ProgressFn<'_>) -> Result<Cow<'a, Scene>, Error> {
+        let Some((world, longest)) = self.rest else { return Ok(self.scene) };
+        let monitor = Monitor::new(progress);
+        let scene = cut_at_exits(self.scene, &world, settings, &monitor)?;
+        cut_at_contacts(scene, &world, (settings, longest * 0.5f32.powi(BEND_ROUNDS)), &monitor)
     }
 }
 

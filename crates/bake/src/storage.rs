@@ -3,10 +3,11 @@
 use crate::extras::Extras;
 use crate::mirror::shining;
 use crate::plan::{may_be_glossy, prepare, simulates};
-use crate::refine::refined;
-use crate::{Error, settings};
+use crate::refine::{Halved, check_size};
+use crate::{Error, ProgressFn, settings};
 use coeff_io::{Effect, Refine, Settings};
 use scene::Scene;
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 /// Times as many vertices as a scene has that the error may ask for before texels are the better place.
@@ -19,12 +20,14 @@ const FILLED: f64 = 0.6;
 const SIDES: [u32; 2] = [64, 2048];
 
 /// Where transfer and gloss are kept.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct StorageChoice {
     /// Texels along a side of all sheets together; none where vertices are enough.
     pub texels: Option<u32>,
     /// The facts that decided it, in one sentence.
     pub reason: String,
+    /// The scene as a bake at vertices splits it, where that was found on the way: [`crate::bake_refined`] takes it.
+    pub refined: Option<Scene>,
 }
 
 /// Chooses for a scene: texels where surfaces that shine have normal maps, or where the triangles would have to be cut much finer to hold
@@ -34,15 +37,18 @@ pub struct StorageChoice {
 /// As [`crate::plan`].
 pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Error> {
     settings::check(settings)?;
-    let vertices = |reason: String| Ok(StorageChoice { texels: None, reason });
-    let matte = || vertices("vertices: no reflection is simulated by direction".into());
+    let matte = |refined| {
+        let reason = "vertices: no reflection is simulated by direction".into();
+        Ok(StorageChoice { texels: None, reason, refined })
+    };
     // Most scenes need no plan, which takes as long to find as all refinement.
     if !may_be_glossy(scene, settings) {
-        return matte();
+        return matte(None);
     }
-    let split = refined(scene, settings, &|_| ControlFlow::Continue(()))?;
-    if !simulates(&prepare(&split, settings, &Extras::default())?.plan, Effect::Glossy) {
-        return matte();
+    check_size(scene)?;
+    let split = Halved::new(scene, settings, UNWATCHED)?;
+    if !simulates(&prepare(split.scene(), settings, &Extras::default())?.plan, Effect::Glossy) {
+        return matte(whole(split, settings)?);
     }
     let shines = shining(scene);
     let bent = scene.meshes.iter().any(|mesh| {
@@ -50,29 +56,40 @@ pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Erro
             && scene.materials[mesh.material as usize].normal_texture.is_some()
             && !mesh.tangents.is_empty()
     });
-    let before: usize = scene.meshes.iter().map(|mesh| mesh.positions.len()).sum();
     // As finely as shadows between the vertices ask for, whether the file is to be cut so or not.
     let fine = match settings.refine {
-        Refine::Auto => split,
-        _ => refined(scene, &Settings { refine: Refine::Auto, ..settings.clone() }, &|_| ControlFlow::Continue(()))?,
+        Refine::Auto => None,
+        _ => Some(Halved::new(scene, &Settings { refine: Refine::Auto, ..settings.clone() }, UNWATCHED)?),
     };
-    let after: usize = fine.meshes.iter().map(|mesh| mesh.positions.len()).sum();
+    let vertices = |scene: &Scene| scene.meshes.iter().map(|mesh| mesh.positions.len()).sum::<usize>();
+    let (before, after) = (vertices(scene), vertices(fine.as_ref().unwrap_or(&split).scene()));
     let side = (after as f64 * TEXELS_PER_VERTEX / FILLED).sqrt();
     let side = (libm::ceil(side / 16.0) as u32 * 16).clamp(SIDES[0], SIDES[1]);
     let growth = after as f64 / before.max(1) as f64;
-    match (bent, growth > MOST_GROWTH) {
-        (true, _) => Ok(StorageChoice {
-            texels: Some(side),
-            reason: "texels: surfaces that shine have normal maps, which vertices cannot follow".into(),
-        }),
-        (false, true) => Ok(StorageChoice {
-            texels: Some(side),
-            reason: format!(
+    let (texels, reason) = match (bent, growth > MOST_GROWTH) {
+        (true, _) => (Some(side), "texels: surfaces that shine have normal maps, which vertices cannot follow".into()),
+        (false, true) => (
+            Some(side),
+            format!(
                 "texels: {before} vertices would have to become {after} to hold the error asked for, {growth:.1} times as many"
             ),
-        }),
-        (false, false) => vertices(format!(
-            "vertices: {before} of them hold the error asked for ({growth:.1} times as many would do it all)"
-        )),
-    }
+        ),
+        (false, false) => (
+            None,
+            format!("vertices: {before} of them hold the error asked for ({growth:.1} times as many would do it all)"),
+        ),
+    };
+    let refined = if texels.is_none() { whole(split, settings)? } else { None };
+    Ok(StorageChoice { texels, reason, refined })
+}
+
+/// Nobody asks how far it is.
+const UNWATCHED: ProgressFn<'_> = &|_| ControlFlow::Continue(());
+
+/// The scene with all its cuts, if there are any.
+fn whole(split: Halved<'_>, settings: &Settings) -> Result<Option<Scene>, Error> {
+    Ok(match split.cut(settings, UNWATCHED)? {
+        Cow::Owned(scene) => Some(scene),
+        Cow::Borrowed(_) => None,
+    })
 }

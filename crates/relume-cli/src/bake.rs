@@ -74,7 +74,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let mut scene = options.scene.load(console)?;
     output::check(&options.output, &scene.files)?;
     let probe = options.probe.as_ref().map(|probe| (probe, &options.read));
-    let extras = options.extras.of(&mut scene, options.bake.storage, &settings, probe, console)?;
+    let (extras, refined) = options.extras.of(&mut scene, options.bake.storage, &settings, probe, console)?;
     let texels = extras.maps.is_some() || extras.textures.is_some();
     console.progress().expect(&stages(&settings, texels, extras.volume.is_some()));
     let began = Instant::now();
@@ -97,7 +97,16 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
         }
         None => {
             let progress = console.progress();
-            let prt = bake::bake_with(&scene, &settings, &extras, &watched(&progress)).map_err(fault)?;
+            let watched = watched(&progress);
+            let baked = match refined {
+                // The scene before it was split is not needed any more.
+                Some(refined) => {
+                    drop(scene);
+                    bake::bake_refined(&refined, &settings, &extras, &watched)
+                }
+                None => bake::bake_with(&scene, &settings, &extras, &watched),
+            };
+            let prt = baked.map_err(fault)?;
             progress.tell("writing", "writing", 0.0);
             write(&prt)?;
             prt

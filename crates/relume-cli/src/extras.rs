@@ -55,7 +55,8 @@ enum Place {
 }
 
 impl ExtraOptions {
-    /// The extras for a scene, which is unwrapped where its light-map coordinates do not serve.
+    /// The extras for a scene, which is unwrapped where its light-map coordinates do not serve; and the scene as the bake splits it, where the
+    /// choice of storage found that.
     pub(crate) fn of(
         &self,
         scene: &mut Scene,
@@ -63,10 +64,10 @@ impl ExtraOptions {
         settings: &Settings,
         probe: Option<(&ProbeSource, &ReadOptions)>,
         console: &Console,
-    ) -> Result<Extras> {
+    ) -> Result<(Extras, Option<Scene>)> {
         let volume = self.volume.settings()?;
         let glossy = self.calls_for_gloss(scene, storage, settings)?;
-        let place = self.place(scene, storage, settings, glossy, console)?;
+        let (place, refined) = self.place(scene, storage, settings, glossy, console)?;
         if let (Place::Vertices, Some(option)) = (place, self.maps.typed()) {
             return Err(Usage(format!("{option} is for light maps: add --storage texture")).into());
         }
@@ -100,7 +101,7 @@ impl ExtraOptions {
             }
             Place::Vertices | Place::Maps => None,
         };
-        Ok(Extras { maps, volume, light, textures, compression: self.gloss.compression() })
+        Ok((Extras { maps, volume, light, textures, compression: self.gloss.compression() }, refined))
     }
 
     /// Whether the plan calls for gloss, where that decides something.
@@ -119,9 +120,10 @@ impl ExtraOptions {
         settings: &Settings,
         glossy: bool,
         console: &Console,
-    ) -> Result<Place> {
+    ) -> Result<(Place, Option<Scene>)> {
         let of_maps = self.maps.typed_of_maps();
-        Ok(match storage {
+        let mut refined = None;
+        let place = match storage {
             Storage::Vertex => Place::Vertices,
             Storage::Maps => Place::Maps,
             Storage::Texture if of_maps.is_some() || !glossy => Place::Maps,
@@ -140,10 +142,14 @@ impl ExtraOptions {
                         console.notice(&format!("storage: {}", choice.reason));
                         Place::Transfer(texels)
                     }
-                    None => Place::Vertices,
+                    None => {
+                        refined = choice.refined;
+                        Place::Vertices
+                    }
                 }
             }
-        })
+        };
+        Ok((place, refined))
     }
 
     /// The light that is baked in, if one is.

@@ -4,6 +4,7 @@ use super::{Gathered, MapSettings, SheetSettings, functions, gather};
 use crate::bake::bake_then;
 use crate::domain::Domain;
 use crate::extras::{Done, Extras, FixedLight};
+use crate::refine::refined;
 use crate::{Error, ProgressFn};
 use coeff_io::{Encoding, Settings};
 use rayon::prelude::*;
@@ -46,6 +47,7 @@ pub fn directional(
         MapSettings { basis: Basis::Sh9, sheets: sheets.to_vec(), stitch: false, dilation: 0, encoding: Encoding::F32 };
     let extras = Extras { maps: Some(maps), light: Some(light.clone()), ..Extras::default() };
     let maps = extras.maps.as_ref().expect("just put there");
+    let scene = &*refined(scene, settings, progress)?;
     let (_, found) = bake_then(scene, settings, &extras, progress, |done, _| all_directional(done, maps))?;
     Ok(found)
 }
