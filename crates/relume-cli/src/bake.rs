@@ -69,7 +69,7 @@ impl Options {
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
     let settings =
-        Settings { time: options.time, ..options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))? };
+        Settings { time: options.time, ..options.bake.settings(light.as_ref().map_or(&[], LightFacts::norms))? };
     output::check(&options.output, &options.inputs())?;
     let mut scene = options.scene.load(console)?;
     output::check(&options.output, &scene.files)?;

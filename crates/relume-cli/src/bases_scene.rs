@@ -3,7 +3,6 @@
 use crate::bases::write;
 use crate::console::Console;
 use crate::draw::Window;
-use crate::extras::fixed_light;
 use crate::sheets::{PADDING, SMALLEST, SheetChoice};
 use crate::source::{self, ProbeSource, ReadOptions, SceneSource};
 use crate::usage::Usage;
@@ -131,7 +130,7 @@ fn bake(
     window: Window,
     console: &Console,
 ) -> Result<Directional> {
-    let light = fixed_light(environment, settings.bands, window)?;
+    let light = relume::fixed_light(environment, settings.bands, window.into()).map_err(crate::usage::fault)?;
     let progress = console.progress();
     progress.expect(&baking::stages(settings, true, false));
     bake::directional(scene, settings, sheets, &light, &baking::watched(&progress)).map_err(baking::fault)

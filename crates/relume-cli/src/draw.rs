@@ -1,11 +1,12 @@
-//! Who draws: the GPU where there is one, the CPU anywhere.
+//! The renderer as the command line uses it: names of options, and notices about who draws.
 
 use crate::console::Console;
 use crate::silence::silenced;
 use anyhow::Result;
 use coeff_io::Prt;
 use probe_io::Environment;
-use render_cpu::{Frame, Image, Tonemap};
+use relume::{Device, Renderer, RendererOptions};
+use render_cpu::{Frame, Image};
 use render_wgpu::{Driver, Gpu};
 use std::time::Duration;
 
@@ -20,13 +21,14 @@ pub(crate) enum Backend {
     Cpu,
 }
 
-/// A scene under a light, ready to be drawn.
-pub(crate) struct Drawer<'a> {
-    prt: &'a Prt,
-    environment: &'a Environment,
-    backend: Backend,
-    renderer: Renderer<'a>,
-    window: Window,
+impl From<Backend> for relume::Backend {
+    fn from(backend: Backend) -> Self {
+        match backend {
+            Backend::Auto => Self::Auto,
+            Backend::Gpu => Self::Gpu,
+            Backend::Cpu => Self::Cpu,
+        }
+    }
 }
 
 /// What is done against ringing: a strong small light, cut off at few bands, is negative in places.
@@ -39,23 +41,27 @@ pub(crate) enum Window {
     Auto,
 }
 
-impl Window {
-    /// The light as it is shown.
-    pub(crate) fn apply(self, light: &sh_math::Rgb) -> sh_math::Rgb {
-        match self {
-            Self::None => light.clone(),
-            Self::Auto => sh_math::window::without_ringing(light),
+impl From<Window> for relume::Window {
+    fn from(window: Window) -> Self {
+        match window {
+            Window::None => Self::None,
+            Window::Auto => Self::Auto,
         }
     }
 }
 
-enum Renderer<'a> {
-    Gpu(Box<render_wgpu::Renderer>),
-    Cpu(Box<render_cpu::Renderer<'a>>),
+impl Window {
+    /// The light as it is shown.
+    pub(crate) fn apply(self, light: &sh_math::Rgb) -> sh_math::Rgb {
+        relume::Window::from(self).apply(light)
+    }
 }
 
+/// A scene under a light, ready to be drawn.
+pub(crate) struct Drawer<'a>(Renderer<'a>);
+
 impl<'a> Drawer<'a> {
-    /// Makes scene and light ready; says so where the CPU has to stand in for the GPU.
+    /// Makes scene and light ready; says who draws.
     pub(crate) fn open(
         backend: Backend,
         prt: &'a Prt,
@@ -63,98 +69,40 @@ impl<'a> Drawer<'a> {
         window: Window,
         console: &Console,
     ) -> Result<Self> {
-        let renderer = match backend {
-            Backend::Cpu => {
-                console.notice("drawing on the CPU");
-                cpu(prt, environment, window)?
-            }
-            Backend::Gpu => gpu(prt, environment, window, console)?,
-            Backend::Auto => match gpu(prt, environment, window, console) {
-                Ok(renderer) => renderer,
-                Err(error) => stand_in(prt, environment, window, &error, console)?,
-            },
+        let options = RendererOptions {
+            backend: backend.into(),
+            window: window.into(),
+            open_gpu: || silenced(|| Gpu::new(Driver::Any)),
         };
-        Ok(Self { prt, environment, backend, renderer, window })
+        let renderer = Renderer::with_options(prt, environment, options)?;
+        console.notice(&text(renderer.device()));
+        Ok(Self(renderer))
     }
 
-    /// Draws one picture.
+    /// Draws one picture; says so where the CPU has to stand in for the GPU.
     pub(crate) fn draw(&mut self, frame: &Frame, console: &Console) -> Result<Image> {
-        let drawn = match &mut self.renderer {
-            Renderer::Gpu(renderer) => renderer.draw(&for_gpu(frame)),
-            Renderer::Cpu(renderer) => return Ok(renderer.draw(frame)?),
-        };
-        match drawn {
-            Ok(render_wgpu::Image { width, height, linear, display }) => Ok(Image { width, height, linear, display }),
-            Err(error) if self.backend == Backend::Auto => {
-                self.renderer = stand_in(self.prt, self.environment, self.window, &error.into(), console)?;
-                self.draw(frame, console)
-            }
-            Err(error) => Err(error.into()),
+        let before = self.0.device().clone();
+        let image = self.0.draw(frame)?;
+        if *self.0.device() != before {
+            console.notice(&text(self.0.device()));
         }
+        Ok(image)
     }
 
     /// Time that the GPU takes for a picture that stays there; `None` where the CPU draws.
     pub(crate) fn time(&mut self, frame: &Frame) -> Result<Option<Duration>> {
-        match &mut self.renderer {
-            Renderer::Gpu(renderer) => Ok(Some(renderer.time(&for_gpu(frame))?.frame)),
-            Renderer::Cpu(_) => Ok(None),
-        }
+        Ok(self.0.gpu_time(frame)?)
     }
 }
 
-fn cpu<'a>(prt: &'a Prt, environment: &'a Environment, window: Window) -> Result<Renderer<'a>> {
-    let renderer = match window {
-        Window::Auto => render_cpu::Renderer::new(prt, environment)?,
-        Window::None => render_cpu::Renderer::without_window(prt, environment)?,
-    };
-    Ok(Renderer::Cpu(Box::new(renderer)))
-}
-
-fn gpu<'a>(prt: &Prt, environment: &Environment, window: Window, console: &Console) -> Result<Renderer<'a>> {
-    let gpu = silenced(|| Gpu::new(Driver::Any))?;
-    let renderer = match window {
-        Window::Auto => render_wgpu::Renderer::new(&gpu, prt, environment)?,
-        Window::None => render_wgpu::Renderer::without_window(&gpu, prt, environment)?,
-    };
-    let kind = if gpu.is_software() { "a software driver" } else { "the GPU" };
-    console.notice(&format!("drawing on {kind}: {}", gpu.description()));
-    Ok(Renderer::Gpu(Box::new(renderer)))
-}
-
-fn stand_in<'a>(
-    prt: &'a Prt,
-    environment: &'a Environment,
-    window: Window,
-    error: &anyhow::Error,
-    console: &Console,
-) -> Result<Renderer<'a>> {
-    let text = match error.downcast_ref() {
-        Some(render_wgpu::Error::NoAdapter { .. }) => "drawing on the CPU: no graphics driver was found".to_owned(),
-        _ => format!("drawing on the CPU: {error:#}"),
-    };
-    console.notice(&text);
-    cpu(prt, environment, window)
-}
-
-fn for_gpu(frame: &Frame) -> render_wgpu::Frame {
-    render_wgpu::Frame {
-        camera: frame.camera.clone(),
-        width: frame.width,
-        height: frame.height,
-        rotation: frame.rotation,
-        exposure_ev: frame.exposure_ev,
-        tonemap: match frame.tonemap {
-            Tonemap::None => render_wgpu::Tonemap::None,
-            Tonemap::Reinhard => render_wgpu::Tonemap::Reinhard,
-            Tonemap::Filmic => render_wgpu::Tonemap::Filmic,
-        },
-        bloom: frame.bloom,
-        supersample: frame.supersample,
-        sky: frame.sky,
-        albedo: frame.albedo,
-        basis: frame.basis,
-        functions: frame.functions,
-        gloss: frame.gloss,
-        early_depth: true,
+fn text(device: &Device) -> String {
+    match device {
+        Device::Gpu { description, is_software: true } => format!("drawing on a software driver: {description}"),
+        Device::Gpu { description, is_software: false } => format!("drawing on the GPU: {description}"),
+        Device::Cpu { gpu_error: None } => "drawing on the CPU".to_owned(),
+        Device::Cpu { gpu_error: Some(render_wgpu::Error::NoAdapter { .. }) } => {
+            "drawing on the CPU: no graphics driver was found".to_owned()
+        }
+        Device::Cpu { gpu_error: Some(error) } => format!("drawing on the CPU: {error}"),
     }
 }

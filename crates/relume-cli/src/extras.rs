@@ -11,9 +11,7 @@ use crate::volume::VolumeOptions;
 use anyhow::Result;
 use bake::{Extras, FixedLight};
 use coeff_io::{Effect, Effects, Settings};
-use probe_io::Environment;
 use scene::Scene;
-use sh_math::Bands;
 
 /// Bytes of light maps that are worth a word before they are baked.
 const MANY: u64 = 256 << 20;
@@ -168,15 +166,10 @@ impl ExtraOptions {
             (LightMode::Fixed, Some((probe, read))) => {
                 // The bounces of gloss take all bands that reach a product; light maps and volumes the first of them.
                 let bands = if place == Place::Maps { bands } else { 2 * bands - 1 };
-                Ok(Some(fixed_light(&probe.load(read, console)?, bands, self.window.unwrap_or(Window::Auto))?))
+                let window = self.window.unwrap_or(Window::Auto).into();
+                let light = relume::fixed_light(&probe.load(read, console)?, bands, window);
+                Ok(Some(light.map_err(crate::usage::fault)?))
             }
         }
     }
-}
-
-/// What so many bands hold of a light, to be baked in.
-pub(crate) fn fixed_light(environment: &Environment, bands: u32, window: Window) -> Result<FixedLight> {
-    let bands = Bands::new(bands).ok_or_else(|| Usage(format!("--bands {bands}: use 1 to 32")))?;
-    let light = window.apply(&sh_math::project(bands, environment.samples()));
-    Ok(FixedLight { name: environment.name.clone(), coefficients: light.values })
 }

@@ -1,24 +1,19 @@
-//! What matters about a light to a bake: how much of it each band holds.
+//! What matters about a light to a bake, in words: how much of it each band holds.
 
 use crate::console::Console;
-use crate::source::{self, ProbeSource, ReadOptions};
+use crate::source::{ProbeSource, ReadOptions};
+use crate::usage;
 use anyhow::Result;
 use probe_io::Environment;
+use relume::LightSpectrum;
 use serde_json::json;
-use sh_math::{Bands, Rgb};
-
-/// Bands that a light is measured with at least.
-const LEAST_BANDS: u32 = 16;
 
 /// A light in numbers.
 #[derive(Debug)]
 pub(crate) struct LightFacts {
-    pub(crate) name: String,
-    pub(crate) lamps: usize,
-    /// Share of the squared coefficients in each band.
-    pub(crate) share: Vec<f64>,
-    /// Norm of each band, the largest of the three channels.
-    pub(crate) norms: Vec<f32>,
+    name: String,
+    lamps: usize,
+    spectrum: LightSpectrum,
 }
 
 impl LightFacts {
@@ -33,28 +28,24 @@ impl LightFacts {
     }
 
     fn of(environment: &Environment, bands: u32) -> Result<Self> {
-        let bands = source::bands(&bands.max(LEAST_BANDS).to_string()).map_err(crate::usage::Usage)?;
-        let light = sh_math::project(bands, environment.samples());
-        let squares = squares(bands, &light);
-        let power: Vec<f64> = squares.iter().map(|square| square.iter().sum()).collect();
-        let total: f64 = power.iter().sum();
-        Ok(Self {
-            name: environment.name.clone(),
-            lamps: environment.lamps.len(),
-            // A black light has no shares.
-            share: power.iter().map(|p| if total > 0.0 { p / total } else { 0.0 }).collect(),
-            norms: squares.iter().map(|square| square.iter().fold(0.0, |a: f64, &b| a.max(b)).sqrt() as f32).collect(),
-        })
+        let spectrum = LightSpectrum::new(environment, bands).map_err(usage::fault)?;
+        Ok(Self { name: environment.name.clone(), lamps: environment.lamps.len(), spectrum })
+    }
+
+    /// Norm of each band, the largest of the three channels.
+    pub(crate) fn norms(&self) -> &[f32] {
+        &self.spectrum.norms
     }
 
     pub(crate) fn json(&self) -> serde_json::Value {
-        json!({ "name": self.name, "lamps": self.lamps, "share_by_band": self.share, "norm_by_band": self.norms })
+        let (share, norms) = (&self.spectrum.share, &self.spectrum.norms);
+        json!({ "name": self.name, "lamps": self.lamps, "share_by_band": share, "norm_by_band": norms })
     }
 
     /// One sentence about what a number of bands holds.
     pub(crate) fn text(&self, bands: u32) -> String {
-        let held: f64 = self.share.iter().take(bands as usize).sum();
-        let (name, lamps, measured) = (&self.name, self.lamps, self.share.len());
+        let held = self.spectrum.share_of_first(bands);
+        let (name, lamps, measured) = (&self.name, self.lamps, self.spectrum.share.len());
         format!(
             "{name}: {lamps} lamp(s); {bands} bands hold {:.1} % of the power in the first {measured}",
             100.0 * held
@@ -62,30 +53,13 @@ impl LightFacts {
     }
 }
 
-/// Per band and channel: sum of the squared coefficients.
-fn squares(bands: Bands, light: &Rgb) -> Vec<[f64; 3]> {
-    let of_band = |l: usize| {
-        let mut sums = [0.0; 3];
-        for value in &light.values[l * l..(l + 1) * (l + 1)] {
-            sums.iter_mut().zip(value).for_each(|(sum, &v)| *sum += f64::from(v) * f64::from(v));
-        }
-        sums
-    };
-    bands.degrees().map(of_band).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A white sky of radiance 1 has sqrt(4 pi) in band 0 and nothing above.
     #[test]
-    fn a_white_sky_has_one_band() {
-        let facts = LightFacts::of(&probe_io::builtin("white").unwrap(), 5).unwrap();
-        assert!((f64::from(facts.norms[0]) - (4.0 * std::f64::consts::PI).sqrt()).abs() < 1e-3, "{:?}", facts.norms);
-        assert!(facts.norms[1..].iter().all(|&n| n < 1e-3) && facts.share[0] > 0.999_99, "{:?}", facts.norms);
+    fn text_names_the_bands_that_were_measured() {
         let sky = LightFacts::of(&probe_io::builtin("sky").unwrap(), 5).unwrap();
-        assert!(sky.share[0] < 0.99, "can fail: a sky with a sun is not white: {:?}", sky.share);
         assert!(sky.text(5).contains("16"), "{}", sky.text(5));
     }
 }

@@ -1,12 +1,9 @@
 //! Pictures on the way out: their size, their file, their display form.
 
-use anyhow::{Context, Result};
-use coeff_io::replace;
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use anyhow::Result;
+use relume::ImageFormat;
 use render_cpu::Tonemap;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Most columns or rows.
 const LARGEST_SIDE: u32 = 16_384;
@@ -31,25 +28,15 @@ pub(crate) fn size(text: &str) -> Result<Size, String> {
 #[derive(Debug, Clone)]
 pub(crate) struct Target {
     pub(crate) path: PathBuf,
-    kind: Kind,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    /// Display values in 8 bits.
-    Png,
-    /// Linear radiance in 32-bit floats.
-    Exr,
+    format: ImageFormat,
 }
 
 /// Parses a file name that ends in `.png` or `.exr`.
 pub(crate) fn target(text: &str) -> Result<Target, String> {
     let path = PathBuf::from(text);
-    let extension = path.extension().map(|e| e.to_ascii_lowercase());
-    match extension.as_ref().and_then(|e| e.to_str()) {
-        Some("png") => Ok(Target { path, kind: Kind::Png }),
-        Some("exr") => Ok(Target { path, kind: Kind::Exr }),
-        _ => Err("give a file that ends in .png (for the display) or .exr (linear)".into()),
+    match ImageFormat::from_path(&path) {
+        Ok(format) => Ok(Target { path, format }),
+        Err(_) => Err("give a file that ends in .png (for the display) or .exr (linear)".into()),
     }
 }
 
@@ -58,28 +45,14 @@ impl Target {
     pub(crate) fn numbered(&self, number: u32) -> Self {
         let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
         let name = format!("{}-{number:04}.{}", part(self.path.file_stem()), part(self.path.extension()));
-        Self { path: self.path.with_file_name(name), kind: self.kind }
+        Self { path: self.path.with_file_name(name), format: self.format }
     }
 
     /// Writes a picture given in both forms; the file is there whole or not at all.
     pub(crate) fn write(&self, size: Size, linear: &[[f32; 3]], display: &[[u8; 4]]) -> Result<()> {
-        let written = match self.kind {
-            Kind::Png => write_png(&self.path, size, display),
-            Kind::Exr => {
-                let bytes = probe_io::encode_exr(&self.path, size.width as usize, size.height as usize, linear)?;
-                replace(&self.path, |file| file.write_all(&bytes))
-            }
-        };
-        written.with_context(|| format!("cannot write {}", self.path.display()))
+        relume::write_image(&self.path, self.format, [size.width, size.height], linear, display)
+            .map_err(crate::usage::fault)
     }
-}
-
-fn write_png(path: &Path, size: Size, display: &[[u8; 4]]) -> io::Result<()> {
-    replace(path, |file| {
-        let encoder = PngEncoder::new(file);
-        let written = encoder.write_image(display.as_flattened(), size.width, size.height, ExtendedColorType::Rgba8);
-        written.map_err(io::Error::other)
-    })
 }
 
 /// How radiance becomes display values.
@@ -139,6 +112,7 @@ fn stops(text: &str) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     #[test]
     fn words_become_sizes_and_files() {

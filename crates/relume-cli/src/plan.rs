@@ -55,7 +55,7 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let light = LightFacts::of_option(options.probe.as_ref(), &options.read, options.bake.most_bands(), console)?;
-    let settings = options.bake.settings(light.as_ref().map_or(&[], |light| &light.norms))?;
+    let settings = options.bake.settings(light.as_ref().map_or(&[], LightFacts::norms))?;
     let scene = options.scene.load(console)?;
     let storage = options.bake.storage;
     let began = Instant::now();

@@ -34,6 +34,14 @@ impl Source {
         }
     }
 
+    /// As the library takes it.
+    fn path(&self) -> PathBuf {
+        match self {
+            Self::Path(path) => path.clone(),
+            Self::Builtin(_) => self.name().into(),
+        }
+    }
+
     /// The file, or the files of a folder, that this reads.
     fn files(&self) -> Vec<PathBuf> {
         match self {
@@ -153,15 +161,11 @@ impl SceneSource {
 
     /// Loads the scene and tells what was mended.
     pub(crate) fn load(&self, console: &Console) -> Result<Scene> {
-        let scene = match &self.0 {
-            Source::Path(path) => {
-                check_kind(path, Kind::Scene, &[scene::BUILTINS, scene::PAPER_SCENES])?;
-                scene::load(path)?
-            }
-            Source::Builtin(name) => {
-                scene::builtin(name).ok_or_else(|| unknown(name, &[scene::BUILTINS, scene::PAPER_SCENES]))?
-            }
-        };
+        let known = [scene::BUILTINS, scene::PAPER_SCENES];
+        if let Source::Path(path) = &self.0 {
+            check_kind(path, Kind::Scene, &known)?;
+        }
+        let scene = relume::load_scene(self.0.path()).map_err(|error| explained(error, &known))?;
         for warning in &scene.report.warnings {
             console.notice(&format!("warning: {}: {}", warning.object, warning.message));
         }
@@ -236,17 +240,10 @@ impl ProbeSource {
 
     /// Loads the probe and tells what was changed in it.
     pub(crate) fn load(&self, read: &ReadOptions, console: &Console) -> Result<Environment> {
-        let path = match &self.0 {
-            Source::Path(path) => {
-                check_kind(path, Kind::Probe, &[probe_io::BUILTINS])?;
-                path
-            }
-            Source::Builtin(name) => {
-                let environment = probe_io::builtin(name).ok_or_else(|| unknown(name, &[probe_io::BUILTINS]))?;
-                check_radiance(&environment, &self.name())?;
-                return Ok(environment);
-            }
-        };
+        let known = [probe_io::BUILTINS];
+        if let Source::Path(path) = &self.0 {
+            check_kind(path, Kind::Probe, &known)?;
+        }
         let negatives = match read.negatives {
             NegativesName::Refuse => Negatives::Refuse,
             NegativesName::Clamp => Negatives::Clamp,
@@ -257,29 +254,24 @@ impl ProbeSource {
         };
         let layout = read.layout.map(Layout::from);
         let options = LoadOptions { layout, negatives, non_finite, layer: read.layer.clone() };
-        let (environment, warnings) = Environment::load(path, &options).map_err(|error| match error {
-            probe_io::Error::NotFinite { .. } => anyhow::anyhow!("{error} (--nonfinite clamp)"),
-            error => error.into(),
-        })?;
+        let (environment, warnings) =
+            relume::load_light_probe_with(self.0.path(), &options).map_err(|error| explained(error, &known))?;
         for warning in warnings {
             console.notice(&format!("warning: {warning}"));
         }
-        check_radiance(&environment, &self.name())?;
         Ok(environment)
     }
 }
 
-/// Most radiance of a pixel: sums of more would leave the range of numbers.
-const BRIGHTEST: f32 = 1e30;
-
-/// Fails where a light is too bright to be summed.
-fn check_radiance(environment: &Environment, name: &str) -> Result<()> {
-    let brightest = environment.image.pixels.iter().flatten().copied().fold(0.0, f32::max);
-    anyhow::ensure!(
-        brightest <= BRIGHTEST,
-        "{name}: a radiance of {brightest:e} is too much to be summed: give 1e30 at most"
-    );
-    Ok(())
+/// The error with the names that there are, or with the option that helps.
+fn explained(error: relume::Error, known: &[&[(&str, &str)]]) -> anyhow::Error {
+    match error {
+        relume::Error::UnknownBuiltin { name, .. } => unknown(&name, known).into(),
+        relume::Error::LightProbe(error @ probe_io::Error::NotFinite { .. }) => {
+            anyhow::anyhow!("{error} (--nonfinite clamp)")
+        }
+        other => other.into(),
+    }
 }
 
 /// The layouts by the names that are typed.

@@ -13,3 +13,12 @@ impl fmt::Display for Usage {
 }
 
 impl std::error::Error for Usage {}
+
+/// A number that is out of range is wrong usage; everything else is a failure.
+pub(crate) fn fault(error: relume::Error) -> anyhow::Error {
+    match error {
+        relume::Error::Bands { .. } => Usage(error.to_string()).into(),
+        relume::Error::Bake(error) => crate::bake::fault(error),
+        other => other.into(),
+    }
+}

@@ -1,27 +1,49 @@
 //! Precomputed Radiance Transfer: bakes how a scene carries light once, and relights it under any environment.
 //!
-//! This crate is the front door of the workspace. It re-exports the crates that a program needs, each under its own
-//! name, and the items that most programs need in [`prelude`].
+//! ```
+//! use relume::prelude::*;
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = tempfile::tempdir()?;
+//! # std::env::set_current_dir(&folder)?;
+//! let scene = load_scene("builtin:plane")?;
+//! let settings = BakeSettings { quality: Quality::Rays(16), ..Preset::Draft.into() };
+//! let prt = relume::bake::bake(&scene, &settings, &|_| std::ops::ControlFlow::Continue(()))?;
+//! let sky = load_light_probe("builtin:sky")?;
+//! let image = Renderer::new(&prt, &sky)?.draw(&Frame::plain(prt.cameras[0].clone(), 64, 36))?;
+//! save_image(&image, "plane.png")?;
+//! # assert!(std::path::Path::new("plane.png").exists());
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! | Step | Items |
 //! |---|---|
-//! | Load a scene: glTF, OBJ or a builtin | [`scene::load`], [`scene::builtin`] |
-//! | Load a light probe: `.hdr`, `.exr` or a builtin | [`probe_io::Environment`], [`probe_io::builtin`] |
-//! | Bake the transfer | [`bake::bake`], [`bake::bake_with`] |
-//! | Read and write `.prt` files | [`coeff_io::Prt`] |
-//! | Draw on the CPU | [`render_cpu::render`] |
-//! | Draw on the GPU | [`render_wgpu::render`] |
+//! | Load a scene or a light probe | [`load_scene`], [`load_light_probe`] |
+//! | Choose settings | [`Preset`], [`BakeSettings`], [`LightSpectrum`] |
+//! | Bake | [`bake::bake`], [`bake::bake_with`], [`fixed_light`] |
+//! | Keep the result in a `.prt` file | [`Prt::write`], [`Prt::read`] |
+//! | Draw, on the GPU or the CPU | [`Renderer`], [`save_image`] |
 //!
-//! ```
-//! use relume::prelude::*;
-//!
-//! let scene = relume::scene::builtin("plane").expect("a builtin scene");
-//! let settings = Settings { quality: Quality::Rays(16), ..relume::bake::settings::standard() };
-//! let prt = relume::bake::bake(&scene, &settings)?;
-//! assert!(!prt.transfer.values.is_empty());
-//! # Ok::<(), relume::bake::Error>(())
-//! ```
+//! The crates behind these items are re-exported under their own names.
 
-pub use {bake, coeff_io, probe_io, render_cpu, render_wgpu, scene, sh_math};
-
+mod builtin;
+mod error;
+mod image_file;
+mod light_probe;
+mod light_spectrum;
 pub mod prelude;
+mod preset;
+mod renderer;
+mod window;
+
+pub use builtin::load_scene;
+pub use coeff_io::{Prt, Settings as BakeSettings};
+pub use error::Error;
+pub use image_file::{ImageFormat, save_image, write_image};
+pub use light_probe::{load_light_probe, load_light_probe_with};
+pub use light_spectrum::LightSpectrum;
+pub use preset::Preset;
+pub use probe_io::Environment as LightProbe;
+pub use renderer::{Backend, Device, Renderer, RendererOptions};
+pub use window::{Window, fixed_light};
+pub use {bake, coeff_io, probe_io, render_cpu, render_wgpu, scene, sh_math};

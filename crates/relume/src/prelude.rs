@@ -1,6 +1,9 @@
 //! What most programs need: `use relume::prelude::*;`.
 
-pub use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
-pub use probe_io::Environment;
+pub use crate::{
+    Backend, BakeSettings, Device, ImageFormat, LightProbe, LightSpectrum, Preset, Renderer, RendererOptions, Window,
+    fixed_light, load_light_probe, load_scene, save_image,
+};
+pub use coeff_io::{Bounces, Camera, Prt, Quality, Refine};
 pub use render_cpu::{Frame, Image, Tonemap};
 pub use scene::Scene;
