@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
-use crate::{interpolation, interrupt, look, output, settings, timed};
+use crate::{interpolation, interrupt, look, output, settings};
 use anyhow::{Context, Result};
 use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
 use std::ops::ControlFlow;
@@ -89,9 +89,12 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
                 let recorder = console.recorder();
                 report(prt, began.elapsed(), options, &recorder);
                 interrupt::hold(recorder.recorded());
+                tell_result(prt, console);
                 Ok(())
             };
-            let prt = timed::bake(&scene, &settings, &extras, deadline, &keep, console)?;
+            let progress = console.progress();
+            let prt = relume::bake_within(&scene, &settings, &extras, deadline, &keep, &watched(&progress))
+                .map_err(of_setting)?;
             interrupt::over();
             prt
         }
@@ -158,6 +161,24 @@ pub(crate) fn fault(error: bake::Error) -> anyhow::Error {
         bake::Error::Setting { .. } => Usage(error.to_string()).into(),
         other => other.into(),
     }
+}
+
+/// [`fault`], where an error is one of the bake.
+fn of_setting(error: anyhow::Error) -> anyhow::Error {
+    match error.downcast() {
+        Ok(error) => fault(error),
+        Err(other) => other,
+    }
+}
+
+/// Tells of one result of several.
+fn tell_result(prt: &Prt, console: &Console) {
+    let seconds = console.began().elapsed().as_secs_f64();
+    let what = match prt.settings.quality {
+        Quality::Error(_) => format!("95 % of the errors below {}", percent(relume::achieved_error(prt))),
+        Quality::Rays(rays) => format!("a result of {rays} rays per receiver"),
+    };
+    console.notice(&format!("after {seconds:.1} s: {what}"));
 }
 
 fn report(prt: &Prt, took: Duration, options: &Options, console: &Console) {

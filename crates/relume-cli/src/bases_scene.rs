@@ -3,14 +3,14 @@
 use crate::bases::write;
 use crate::console::Console;
 use crate::draw::Window;
-use crate::sheets::{PADDING, SMALLEST, SheetChoice};
 use crate::source::{self, ProbeSource, ReadOptions, SceneSource};
 use crate::usage::Usage;
-use crate::{bake as baking, cost, output, settings};
+use crate::{bake as baking, cost, output, settings, sheets};
 use anyhow::Result;
 use bake::{Directional, SheetSettings};
 use coeff_io::{Bounces, Quality, Refine, Settings};
 use probe_io::Environment;
+use relume::AtlasOptions;
 use scene::Scene;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -39,7 +39,7 @@ pub(crate) struct OnScene {
     target_size: Option<u64>,
     /// Texels along a side of the sheets: about so many times as many in all, shared by area.
     #[arg(long, value_name = "N", default_value_t = 256, requires = "scene",
-          value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
+          value_parser = clap::value_parser!(u32).range(i64::from(AtlasOptions::MIN_TEXELS)..=8192))]
     texels: u32,
     /// Unwraps all surfaces, whatever light-map coordinates the scene brings.
     #[arg(long, requires = "scene")]
@@ -79,18 +79,12 @@ pub(crate) fn run(scene: &SceneSource, options: &OnScene, seed: u64, folder: &Pa
     let mut scene = scene.load(console)?;
     output::check_all(folder, &FILES, &scene.files)?;
     let environment = probe.load(&options.read, console)?;
-    let choice = SheetChoice {
-        texels: options.texels,
-        asked: false,
-        unwrap: options.unwrap,
-        padding: PADDING,
-        only: Vec::new(),
-    };
-    let sheets = choice.sheets(&mut scene, console)?;
+    let atlas = AtlasOptions { unwrap_all: options.unwrap, ..AtlasOptions::new(options.texels) };
+    let sheets = sheets::pages(&atlas, &mut scene, console)?;
     let found = bake(&scene, &settings, &sheets, &environment, options.window, console)?;
     let bake_options = match options.window {
-        Window::None => format!("--window none {}", choice.options()),
-        Window::Auto => choice.options(),
+        Window::None => format!("--window none {}", sheets::options(&atlas)),
+        Window::Auto => sheets::options(&atlas),
     };
     let request = Request {
         scene: &scene,

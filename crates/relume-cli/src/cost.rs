@@ -2,14 +2,14 @@
 
 use crate::console::Console;
 use crate::lens::{self, Lens};
-use crate::sheets::{PADDING, SMALLEST, SheetChoice, has_normal_maps};
 use crate::silence::silenced;
 use crate::source::{ProbeOptions, SceneOptions};
 use crate::usage::Usage;
-use crate::{output, settings};
+use crate::{output, settings, sheets};
 use anyhow::{Context, Result};
 use bake::SheetSettings;
 use coeff_io::{Settings, replace};
+use relume::AtlasOptions;
 use render_wgpu::{Driver, Gpu};
 use scene::Scene;
 use std::io::Write;
@@ -76,7 +76,7 @@ pub(crate) struct Options {
     #[arg(long)]
     light_maps: bool,
     /// Texels along a side of the sheets of light maps that bases are compared on.
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=8192))]
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(i64::from(AtlasOptions::MIN_TEXELS)..=8192))]
     texels: u32,
 }
 
@@ -90,7 +90,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     }
     let environment = options.probe.load(console)?;
     output::check_all(&options.output, &FILES, &[scene.files.clone(), options.probe.files()].concat())?;
-    let (mapped, sheet_options) = (options.light_maps(&scene, console)?, options.sheet_choice().options());
+    let (mapped, sheet_options) = (options.light_maps(&scene, console)?, sheets::options(&options.atlas()));
     let targets = Targets { error: options.target_error, seconds: options.target_time, bytes: options.target_size };
     let request = Request {
         scene: &scene,
@@ -130,17 +130,17 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
 }
 
 impl Options {
-    fn sheet_choice(&self) -> SheetChoice {
-        SheetChoice { texels: self.texels, asked: false, unwrap: false, padding: PADDING, only: Vec::new() }
+    fn atlas(&self) -> AtlasOptions {
+        AtlasOptions::new(self.texels)
     }
 
     /// The scene with coordinates of light maps and their sheets, where normal maps or the user ask for them.
     fn light_maps(&self, scene: &Scene, console: &Console) -> Result<Option<(Scene, Vec<SheetSettings>)>> {
-        if !self.light_maps && !has_normal_maps(scene) {
+        if !self.light_maps && !relume::has_normal_maps(scene) {
             return Ok(None);
         }
         let mut scene = scene.clone();
-        match self.sheet_choice().sheets(&mut scene, console) {
+        match sheets::pages(&self.atlas(), &mut scene, console) {
             Ok(sheets) => Ok(Some((scene, sheets))),
             Err(error) if !self.light_maps => {
                 console.notice(&format!("bases of light maps are left out: {error}"));

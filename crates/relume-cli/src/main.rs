@@ -38,7 +38,6 @@ mod settings;
 mod sheets;
 mod silence;
 mod source;
-mod timed;
 mod usage;
 mod uv;
 mod visitor;

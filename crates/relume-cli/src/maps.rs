@@ -2,10 +2,11 @@
 
 use crate::console::Console;
 use crate::gloss::{GlossOptions, SheetSet};
-use crate::sheets::{MOST_TEXELS, PADDING, SMALLEST, SheetChoice};
+use crate::sheets::watched;
 use anyhow::Result;
 use bake::{MapSettings, TextureSettings};
 use coeff_io::Encoding;
+use relume::{AtlasOptions, LightMapOptions, Pages, TransferTextureOptions};
 use scene::Scene;
 use sh_math::hemisphere::Basis;
 
@@ -17,7 +18,7 @@ pub(crate) const TEXELS: u32 = 1024;
 pub(crate) struct MapOptions {
     /// Texels along a side of the sheets of light maps and transfer textures: about so many times as many in all, shared by area.
     /// Where not given, 1024, and more where charts need it.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=i64::from(MOST_TEXELS)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(AtlasOptions::MIN_TEXELS)..=i64::from(AtlasOptions::MAX_TEXELS)))]
     texels: Option<u32>,
     /// The functions over normals that light maps are kept in: sh4, sh9, hl2, hsh4, hsh9, makhotkin4, makhotkin9, zernike3, zernike6, h4,
     /// h6, modified-h1 (an ordinary light map), modified-h4 or modified-h6, which is the default. Surfaces without normal maps keep an
@@ -71,7 +72,7 @@ impl EncodingName {
 /// Settings of light maps for a plan: which sheets there will be is not known before surfaces are unwrapped, and does not matter to it.
 pub(crate) fn planned(scene: &Scene) -> MapSettings {
     let meshes = (0..scene.meshes.len()).collect();
-    let directional = crate::sheets::has_normal_maps(scene);
+    let directional = relume::has_normal_maps(scene);
     MapSettings {
         basis: Basis::ModifiedH6,
         sheets: vec![bake::SheetSettings { meshes, width: 1, height: 1, directional }],
@@ -120,18 +121,18 @@ impl MapOptions {
         bent: bool,
         console: &Console,
     ) -> Result<TextureSettings> {
-        let choice = SheetChoice {
-            texels: self.texels.unwrap_or(texels),
-            asked: self.texels.is_some(),
-            unwrap: self.unwrap,
-            padding: self.padding.unwrap_or(PADDING),
-            only: self.mapped.clone(),
+        let options = TransferTextureOptions {
+            atlas: self.atlas(texels),
+            pages: match options.sheets {
+                SheetSet::Object => Pages::PerMesh,
+                SheetSet::Scene => Pages::Shared,
+            },
+            levels: !options.no_levels,
+            normal_maps: bent,
+            stitch: !self.no_stitch,
         };
-        let sheets = match options.sheets {
-            SheetSet::Object => choice.per_object(scene, console)?,
-            SheetSet::Scene => choice.sheets(scene, console)?,
-        };
-        for sheet in &sheets {
+        let settings = watched(&options.atlas, console, |observer| options.settings(scene, observer))?;
+        for sheet in &settings.sheets {
             console.detail(&format!(
                 "transfer texture of {} x {} texels, {} meshes",
                 sheet.width,
@@ -139,33 +140,37 @@ impl MapOptions {
                 sheet.meshes.len()
             ));
         }
-        Ok(TextureSettings {
-            sheets,
-            dilation: self.padding.unwrap_or(PADDING).max(1),
-            levels: !options.no_levels,
-            bent,
-            stitch: !self.no_stitch,
-        })
+        Ok(settings)
+    }
+
+    /// The pages as they were asked for, of `texels` along a side where none are asked for.
+    fn atlas(&self, texels: u32) -> AtlasOptions {
+        let standard = AtlasOptions::new(self.texels.unwrap_or(texels));
+        AtlasOptions {
+            // Pages of a size that was asked for do not grow.
+            max_texels: self.texels.unwrap_or(standard.max_texels),
+            unwrap_all: self.unwrap,
+            padding: self.padding.unwrap_or(standard.padding),
+            only: self.mapped.clone(),
+            ..standard
+        }
     }
 
     /// The settings for a scene, whose surfaces are unwrapped where their own coordinates do not serve.
     pub(crate) fn settings(&self, scene: &mut Scene, console: &Console) -> Result<MapSettings> {
-        let choice = SheetChoice {
-            texels: self.texels.unwrap_or(TEXELS),
-            asked: self.texels.is_some(),
-            unwrap: self.unwrap,
-            padding: self.padding.unwrap_or(PADDING),
-            only: self.mapped.clone(),
+        let options = LightMapOptions {
+            atlas: self.atlas(TEXELS),
+            basis: self.basis.unwrap_or(Basis::ModifiedH6),
+            stitch: !self.no_stitch,
+            encoding: self.encoding.unwrap_or(EncodingName::F16).encoding(),
         };
-        let basis = self.basis.unwrap_or(Basis::ModifiedH6);
-        let mut sheets = choice.sheets(scene, console)?;
-        if basis == Basis::ModifiedH1 && sheets.iter().any(|sheet| sheet.directional) {
+        let settings = watched(&options.atlas, console, |observer| options.settings(scene, observer))?;
+        let mut meshes = settings.sheets.iter().flat_map(|sheet| &sheet.meshes);
+        if settings.basis == Basis::ModifiedH1 && meshes.any(|&mesh| relume::is_normal_mapped(scene, mesh)) {
             console.notice("normal maps are left out: an ordinary light map (--basis modified-h1) answers to none");
         }
-        // An ordinary light map answers to no normal map.
-        sheets.iter_mut().for_each(|sheet| sheet.directional &= basis != Basis::ModifiedH1);
-        for sheet in &sheets {
-            let kind = if sheet.directional { basis.name() } else { "an ordinary light map" };
+        for sheet in &settings.sheets {
+            let kind = if sheet.directional { settings.basis.name() } else { "an ordinary light map" };
             console.detail(&format!(
                 "sheet of {} x {} texels, {} meshes, {kind}",
                 sheet.width,
@@ -173,12 +178,6 @@ impl MapOptions {
                 sheet.meshes.len()
             ));
         }
-        Ok(MapSettings {
-            basis,
-            sheets,
-            stitch: !self.no_stitch,
-            dilation: self.padding.unwrap_or(PADDING).max(1),
-            encoding: self.encoding.unwrap_or(EncodingName::F16).encoding(),
-        })
+        Ok(settings)
     }
 }

@@ -35,6 +35,17 @@ pub enum Error {
         /// The number that was asked for.
         bands: u32,
     },
+    /// Light-map coordinates could not be made.
+    #[error(transparent)]
+    Unwrap(#[from] scene::lightmap::UnwrapError),
+    /// No mesh or material has that name.
+    #[error("{name}: no mesh or material of {scene} has that name")]
+    UnknownMesh {
+        /// Name of the scene.
+        scene: String,
+        /// The name that was asked for.
+        name: String,
+    },
     /// A bake failed or was cancelled.
     #[error(transparent)]
     Bake(#[from] bake::Error),

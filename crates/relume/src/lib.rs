@@ -7,7 +7,7 @@
 //! # std::env::set_current_dir(&folder)?;
 //! let scene = load_scene("builtin:plane")?;
 //! let settings = BakeSettings { quality: Quality::Rays(16), ..Preset::Draft.into() };
-//! let prt = relume::bake::bake(&scene, &settings, &|_| std::ops::ControlFlow::Continue(()))?;
+//! let prt = Bake::new(&scene).settings(settings).run()?;
 //! let sky = load_light_probe("builtin:sky")?;
 //! let image = Renderer::new(&prt, &sky)?.draw(&Frame::plain(prt.cameras[0].clone(), 64, 36))?;
 //! save_image(&image, "plane.png")?;
@@ -20,12 +20,16 @@
 //! |---|---|
 //! | Load a scene or a light probe | [`load_scene`], [`load_light_probe`] |
 //! | Choose settings | [`Preset`], [`BakeSettings`], [`LightSpectrum`] |
-//! | Bake | [`bake::bake`], [`bake::bake_with`], [`fixed_light`] |
+//! | Bake, also within a time | [`Bake`] |
+//! | Light maps, transfer textures, an irradiance volume, a fixed light | [`Bake`], [`LightMapOptions`], [`AtlasOptions`] |
 //! | Keep the result in a `.prt` file | [`Prt::write`], [`Prt::read`] |
 //! | Draw, on the GPU or the CPU | [`Renderer`], [`save_image`] |
 //!
 //! The crates behind these items are re-exported under their own names.
 
+mod atlas;
+mod bake_job;
+mod bake_within;
 mod builtin;
 mod error;
 mod image_file;
@@ -34,8 +38,13 @@ mod light_spectrum;
 pub mod prelude;
 mod preset;
 mod renderer;
+mod schedule;
+mod texture_options;
 mod window;
 
+pub use atlas::{AtlasEvent, AtlasObserver, AtlasOptions, has_normal_maps, is_normal_mapped};
+pub use bake_job::{Bake, fixed_bands};
+pub use bake_within::{achieved_error, bake_within};
 pub use builtin::load_scene;
 pub use coeff_io::{Prt, Settings as BakeSettings};
 pub use error::Error;
@@ -45,5 +54,6 @@ pub use light_spectrum::LightSpectrum;
 pub use preset::Preset;
 pub use probe_io::Environment as LightProbe;
 pub use renderer::{Backend, Device, Renderer, RendererOptions};
+pub use texture_options::{LightMapOptions, Pages, TransferTextureOptions};
 pub use window::{Window, fixed_light};
 pub use {bake, coeff_io, probe_io, render_cpu, render_wgpu, scene, sh_math};

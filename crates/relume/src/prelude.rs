@@ -1,9 +1,10 @@
 //! What most programs need: `use relume::prelude::*;`.
 
 pub use crate::{
-    Backend, BakeSettings, Device, ImageFormat, LightProbe, LightSpectrum, Preset, Renderer, RendererOptions, Window,
-    fixed_light, load_light_probe, load_scene, save_image,
+    AtlasOptions, Backend, Bake, BakeSettings, Device, ImageFormat, LightMapOptions, LightProbe, LightSpectrum, Preset,
+    Renderer, RendererOptions, TransferTextureOptions, Window, fixed_light, load_light_probe, load_scene, save_image,
 };
+pub use bake::VolumeSettings;
 pub use coeff_io::{Bounces, Camera, Prt, Quality, Refine};
 pub use render_cpu::{Frame, Image, Tonemap};
 pub use scene::Scene;

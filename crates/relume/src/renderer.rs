@@ -59,8 +59,7 @@ pub enum Device {
 /// ```
 /// # use relume::prelude::*;
 /// # let scene = load_scene("builtin:plane")?;
-/// # let prt = relume::bake::bake(&scene, &BakeSettings { quality: Quality::Rays(16), ..Preset::Draft.into() },
-/// #     &|_| std::ops::ControlFlow::Continue(()))?;
+/// # let prt = Bake::new(&scene).settings(BakeSettings { quality: Quality::Rays(16), ..Preset::Draft.into() }).run()?;
 /// let sky = load_light_probe("builtin:sky")?;
 /// let mut renderer = Renderer::new(&prt, &sky)?;
 /// let image = renderer.draw(&Frame::plain(prt.cameras[0].clone(), 64, 36))?;

@@ -1,107 +1,45 @@
-//! The least error within a time: bakes from coarse to fine, each result kept until a finer one is finished.
+//! Which bake follows within a time: predictions from the times of the bakes before.
 
-use crate::bake::{fault, watched};
-use crate::columns::percent;
-use crate::console::Console;
-use anyhow::Result;
-use bake::Extras;
-use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
+use coeff_io::{Bounces, Quality, Settings};
 use scene::Scene;
-use std::sync::OnceLock;
-use std::time::Instant;
 
 /// Error of the first result: it takes hardly more rays than the two looks that any estimate needs.
-const COARSEST: f32 = 0.1;
+pub(crate) const COARSEST: f32 = 0.1;
 /// Errors are not asked below this.
-const FINEST: f32 = 1e-4;
+pub(crate) const FINEST: f32 = 1e-4;
 /// An error this much smaller than the last is worth another bake.
-const WORTH: f32 = 0.8;
+pub(crate) const WORTH: f32 = 0.8;
 /// Most by which an error may shrink from one bake to the next: beyond, the prediction would guess.
-const STEP: f32 = 4.0;
+pub(crate) const STEP: f32 = 4.0;
 /// Share of the time left that a bake is planned to take.
-const SHARE: f64 = 0.8;
+pub(crate) const SHARE: f64 = 0.8;
 /// Exponent of the time over the error before two results tell: rays grow with about this power.
-const EXPONENT: f64 = 1.4;
+pub(crate) const EXPONENT: f64 = 1.4;
 
 /// Rays of the first result: the fewest that a bake takes, so that it comes as early as the scene allows and tells how fast rays are there.
-const FIRST_RAYS: u32 = 16;
+pub(crate) const FIRST_RAYS: u32 = 16;
 /// Rays traced for each of the first result's: some tell what blocks the others.
-const PROBES: f64 = 2.0;
+pub(crate) const PROBES: f64 = 2.0;
 /// The same where light bounces: what blocks each ray is looked up, backs and near surfaces look too.
-const OTHERS: f64 = 4.0;
+pub(crate) const OTHERS: f64 = 4.0;
 /// Rays of a receiver at [`COARSEST`], about.
-const COARSE_RAYS: f64 = 128.0;
+pub(crate) const COARSE_RAYS: f64 = 128.0;
 /// Fewest rays for which bounces are worth their time, and for which another result is.
-const FEWEST_RAYS: f64 = 32.0;
+pub(crate) const FEWEST_RAYS: f64 = 32.0;
 /// Time that must be left for splitting the triangles and a coarse bake of them, in that of a coarse bake of the triangles as they are.
-const SPLITTING: f64 = 4.0;
+pub(crate) const SPLITTING: f64 = 4.0;
 
 /// A finished bake: the error that it kept, asked for or better, and the seconds that it took, all of them and before the first ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Rung {
-    error: f32,
-    seconds: f64,
-    preparation: f64,
-}
-
-/// Bakes with ever smaller errors while time lasts; `keep` gets each result. The first is finished whatever it takes, so it is the coarsest,
-/// of the triangles as they are; from then on whoever called may end the program at the deadline.
-///
-/// What follows is chosen from the times of the bakes before, so that it ends in the time left: what remains after the last is too little
-/// for an error smaller by a fifth.
-pub(crate) fn bake(
-    scene: &Scene,
-    settings: &Settings,
-    extras: &Extras,
-    deadline: Instant,
-    keep: &dyn Fn(&Prt) -> Result<()>,
-    console: &Console,
-) -> Result<Prt> {
-    let ladder = Ladder { extras, deadline, keep, console };
-    let first = Settings { quality: Quality::Rays(FIRST_RAYS), bounces: Bounces::Fixed(0), ..settings.clone() };
-    // What is done of the splitting that was asked for.
-    let mut split = Refine::Off;
-    let (mut best, rung) = ladder.step(scene, &first, split)?;
-    let mut speed = Speed::of(&first, rung, receivers(scene));
-    let mut scene = std::borrow::Cow::Borrowed(scene);
-    let (mut before, mut rungs) = (first, Vec::new());
-    while rungs.is_empty() {
-        let Some(wanted) = coarser(&before, settings, speed, receivers(&scene), ladder.left()) else { return Ok(best) };
-        let rung;
-        (best, rung) = ladder.step(&scene, &wanted, split)?;
-        speed = Speed::of(&wanted, rung, receivers(&scene));
-        if let Quality::Error(_) = wanted.quality {
-            rungs.push(rung);
-        }
-        before = wanted;
-    }
-    if let [rung] = rungs[..]
-        && settings.refine != Refine::Off
-        && SPLITTING * rung.seconds < ladder.left()
-    {
-        let fine = bake::refine_watched(&scene, settings, &watched(&console.progress())).map_err(fault)?;
-        if speed.coarse(settings, receivers(&fine)) < SHARE * ladder.left() {
-            let wanted = Settings { quality: Quality::Error(COARSEST), ..settings.clone() };
-            let rung;
-            split = settings.refine;
-            (best, rung) = ladder.step(&fine, &wanted, split)?;
-            rungs = vec![rung];
-            scene = std::borrow::Cow::Owned(fine.into_owned());
-        }
-    }
-    while !exhausted(&best) {
-        let Some(error) = next(&rungs, ladder.left()) else { break };
-        let wanted = Settings { quality: Quality::Error(error), ..settings.clone() };
-        let (prt, rung) = ladder.step(&scene, &wanted, split)?;
-        best = prt;
-        rungs.push(rung);
-    }
-    Ok(best)
+pub(crate) struct Rung {
+    pub(crate) error: f32,
+    pub(crate) seconds: f64,
+    pub(crate) preparation: f64,
 }
 
 /// How fast bakes of a scene are, by one of them.
 #[derive(Debug, Clone, Copy)]
-struct Speed {
+pub(crate) struct Speed {
     /// Seconds before the first ray, per receiver.
     preparation: f64,
     /// Seconds per ray, all other work counted in.
@@ -109,7 +47,7 @@ struct Speed {
 }
 
 impl Speed {
-    fn of(settings: &Settings, rung: Rung, receivers: f64) -> Speed {
+    pub(crate) fn new(settings: &Settings, rung: Rung, receivers: f64) -> Speed {
         let rays = match settings.quality {
             Quality::Rays(rays) => f64::from(rays),
             Quality::Error(_) => COARSE_RAYS,
@@ -120,28 +58,34 @@ impl Speed {
     }
 
     /// Seconds that a bake with so many rays per receiver should take.
-    fn seconds(self, rays: f64, bounces: Bounces, receivers: f64) -> f64 {
+    pub(crate) fn seconds(self, rays: f64, bounces: Bounces, receivers: f64) -> f64 {
         receivers * (self.preparation + self.ray * rays * others(bounces))
     }
 
-    fn coarse(self, settings: &Settings, receivers: f64) -> f64 {
+    pub(crate) fn coarse(self, settings: &Settings, receivers: f64) -> f64 {
         self.seconds(COARSE_RAYS, settings.bounces, receivers)
     }
 
     /// Rays per receiver of a bake in so many seconds.
-    fn rays(self, seconds: f64, bounces: Bounces, receivers: f64) -> f64 {
+    pub(crate) fn rays(self, seconds: f64, bounces: Bounces, receivers: f64) -> f64 {
         (seconds / receivers.max(1.0) - self.preparation) / (self.ray * others(bounces)).max(f64::MIN_POSITIVE)
     }
 }
 
 /// Rays that are traced for each that a receiver asks of the sky.
-fn others(bounces: Bounces) -> f64 {
+pub(crate) fn others(bounces: Bounces) -> f64 {
     if bounces == Bounces::Fixed(0) { PROBES } else { OTHERS }
 }
 
 /// Settings of the result after one of a number of rays: a coarse error, where the time does not suffice more rays than before, with a
 /// bounce if possible; none where there would be too few.
-fn coarser(before: &Settings, settings: &Settings, speed: Speed, receivers: f64, left: f64) -> Option<Settings> {
+pub(crate) fn coarser(
+    before: &Settings,
+    settings: &Settings,
+    speed: Speed,
+    receivers: f64,
+    left: f64,
+) -> Option<Settings> {
     let left = SHARE * left;
     if speed.coarse(settings, receivers) < left {
         return Some(Settings { quality: Quality::Error(COARSEST), ..settings.clone() });
@@ -158,79 +102,14 @@ fn coarser(before: &Settings, settings: &Settings, speed: Speed, receivers: f64,
     })
 }
 
-/// What all bakes have in common.
-struct Ladder<'a> {
-    extras: &'a Extras,
-    deadline: Instant,
-    keep: &'a dyn Fn(&Prt) -> Result<()>,
-    console: &'a Console,
-}
-
-impl Ladder<'_> {
-    fn left(&self) -> f64 {
-        self.deadline.saturating_duration_since(Instant::now()).as_secs_f64()
-    }
-
-    /// One bake of triangles that are split already, as the file will say, or not to be split.
-    fn step(&self, scene: &Scene, wanted: &Settings, split: Refine) -> Result<(Prt, Rung)> {
-        let start = Instant::now();
-        let wanted = Settings { refine: Refine::Off, ..wanted.clone() };
-        let (progress, traced) = (self.console.progress(), OnceLock::new());
-        let show = watched(&progress);
-        let watch = |now: &bake::Progress| {
-            if now.stage != bake::Stage::Preparation {
-                traced.get_or_init(Instant::now);
-            }
-            show(now)
-        };
-        let mut prt = bake::bake_with(scene, &wanted, self.extras, &watch).map_err(fault)?;
-        prt.settings.refine = split;
-        (self.keep)(&prt)?;
-        let reached = reached(&prt);
-        // The fewest rays that tell an error often reach a smaller one than was asked for: that is what is to be beaten.
-        let error = match wanted.quality {
-            Quality::Error(asked) => asked.min(reached),
-            Quality::Rays(_) => COARSEST,
-        };
-        let preparation = traced.get().map_or(0.0, |traced| traced.duration_since(start).as_secs_f64());
-        let rung = Rung { error, seconds: start.elapsed().as_secs_f64(), preparation };
-        let seconds = self.console.began().elapsed().as_secs_f64();
-        match wanted.quality {
-            Quality::Error(_) => {
-                self.console.notice(&format!("after {seconds:.1} s: 95 % of the errors below {}", percent(reached)));
-            }
-            Quality::Rays(rays) => {
-                self.console.notice(&format!("after {seconds:.1} s: a result of {rays} rays per receiver"));
-            }
-        }
-        Ok((prt, rung))
-    }
-}
-
-/// The error of most receivers and texels.
-fn reached(prt: &Prt) -> f32 {
-    prt.achieved.error[1].max(prt.achieved.maps.map_or(0.0, |maps| maps.error[1]))
-}
-
 /// Vertices, and the backs of those that have two sides.
-fn receivers(scene: &Scene) -> f64 {
+pub(crate) fn receivers(scene: &Scene) -> f64 {
     let sides = |mesh: &scene::Mesh| if scene.materials[mesh.material as usize].double_sided { 2.0 } else { 1.0 };
     scene.meshes.iter().map(|mesh| mesh.positions.len() as f64 * sides(mesh)).sum()
 }
 
-/// Whether no error is left, or most receivers took all directions that there are: a smaller error would change nothing.
-fn exhausted(prt: &Prt) -> bool {
-    match prt.settings.quality {
-        Quality::Rays(_) => false,
-        Quality::Error(asked) => {
-            reached(prt) == 0.0
-                || prt.achieved.error[0].max(prt.achieved.maps.map_or(0.0, |maps| maps.error[0])) > asked
-        }
-    }
-}
-
 /// The error to ask for next with so many seconds left; none where that would be hardly smaller.
-fn next(rungs: &[Rung], left: f64) -> Option<f32> {
+pub(crate) fn next(rungs: &[Rung], left: f64) -> Option<f32> {
     let last = rungs.last()?;
     let exponent = match rungs {
         [.., before, last] => {
@@ -306,7 +185,7 @@ mod tests {
             let seconds = preparation + receivers * rays * others(wanted.bounces) / rays_per_second;
             left -= seconds;
             found.push(rays);
-            let speed = Speed::of(&wanted, Rung { error: COARSEST, seconds, preparation }, receivers);
+            let speed = Speed::new(&wanted, Rung { error: COARSEST, seconds, preparation }, receivers);
             match coarser(&wanted, &settings, speed, receivers, left) {
                 Some(next) if matches!(wanted.quality, Quality::Rays(_)) => wanted = next,
                 _ => return (found, allowed - left),
