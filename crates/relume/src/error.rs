@@ -52,6 +52,9 @@ pub enum Error {
     /// A `.prt` file could not be read or written.
     #[error(transparent)]
     Prt(#[from] coeff_io::Error),
+    /// A dynamic object cannot stand in a scene.
+    #[error(transparent)]
+    DynamicObject(#[from] coeff_io::VisitorError),
     /// The CPU renderer refused a file or a frame.
     #[error(transparent)]
     RenderCpu(#[from] render_cpu::Error),

@@ -1,19 +1,23 @@
 //! Precomputed Radiance Transfer: bakes how a scene carries light once, and relights it under any environment.
 //!
+//! A program that bakes a glTF scene, keeps the result, and draws it under a sky:
+//!
 //! ```
 //! use relume::prelude::*;
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! # let folder = tempfile::tempdir()?;
-//! # std::env::set_current_dir(&folder)?;
-//! let scene = load_scene("builtin:plane")?;
-//! let settings = BakeSettings { quality: Quality::Rays(16), ..Preset::Draft.into() };
-//! let prt = Bake::new(&scene).settings(settings).run()?;
-//! let sky = load_light_probe("builtin:sky")?;
-//! let image = Renderer::new(&prt, &sky)?.draw(&Frame::plain(prt.cameras[0].clone(), 64, 36))?;
-//! save_image(&image, "plane.png")?;
-//! # assert!(std::path::Path::new("plane.png").exists());
-//! # Ok(())
-//! # }
+//!
+//! fn main() -> Result<(), relume::Error> {
+//! #   let folder = tempfile::tempdir().expect("a folder");
+//! #   std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/wall.gltf"), folder.path().join("wall.gltf")).unwrap();
+//! #   std::env::set_current_dir(&folder).expect("the folder");
+//!     let scene = load_scene("wall.gltf")?;
+//!     let prt = Bake::new(&scene).settings(Preset::Draft).run()?;
+//!     prt.write("wall.prt".as_ref())?;
+//!
+//!     let sky = load_light_probe("builtin:sky")?;
+//!     let frame = Frame::plain(prt.cameras[0].clone(), 320, 180);
+//!     let image = Renderer::new(&prt, &sky)?.draw(&frame)?;
+//!     save_image(&image, "wall.png")
+//! }
 //! ```
 //!
 //! | Step | Items |
@@ -25,7 +29,8 @@
 //! | Keep the result in a `.prt` file | [`Prt::write`], [`Prt::read`] |
 //! | Draw, on the GPU or the CPU | [`Renderer`], [`save_image`] |
 //!
-//! The crates behind these items are re-exported under their own names.
+//! The folder `examples` has numbered programs, from the first image to light maps, dynamic objects and the coefficients
+//! themselves. The crates behind these items are re-exported under their own names.
 
 mod atlas;
 mod bake_job;
@@ -56,4 +61,4 @@ pub use probe_io::Environment as LightProbe;
 pub use renderer::{Backend, Device, Renderer, RendererOptions};
 pub use texture_options::{LightMapOptions, Pages, TransferTextureOptions};
 pub use window::{Window, fixed_light};
-pub use {bake, coeff_io, probe_io, render_cpu, render_wgpu, scene, sh_math};
+pub use {bake, coeff_io, glam, probe_io, render_cpu, render_wgpu, scene, sh_math};

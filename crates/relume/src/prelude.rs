@@ -6,5 +6,6 @@ pub use crate::{
 };
 pub use bake::VolumeSettings;
 pub use coeff_io::{Bounces, Camera, Prt, Quality, Refine};
+pub use glam::{Quat, Vec3};
 pub use render_cpu::{Frame, Image, Tonemap};
 pub use scene::Scene;

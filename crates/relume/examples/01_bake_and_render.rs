@@ -1,0 +1,24 @@
+//! Bakes a scene, writes the `.prt` file, and draws it under a sky: `cargo run --release --example 01_bake_and_render`.
+
+use relume::prelude::*;
+use std::path::Path;
+
+/// Writes `first.prt`, `first.png` and `first.exr` into a folder.
+pub(crate) fn run(folder: &Path) -> Result<(), relume::Error> {
+    // A file works as well: load_scene("house.glb").
+    let scene = load_scene("builtin:sphere-on-plane")?;
+    let prt = Bake::new(&scene).settings(Preset::Draft).run()?;
+    prt.write(&folder.join("first.prt"))?;
+
+    // The file holds all that a renderer needs.
+    let prt = Prt::read(&folder.join("first.prt"))?;
+    let sky = load_light_probe("builtin:sky")?;
+    let frame = Frame { tonemap: Tonemap::Filmic, supersample: 2, ..Frame::plain(prt.cameras[0].clone(), 320, 180) };
+    let image = Renderer::new(&prt, &sky)?.draw(&frame)?;
+    save_image(&image, folder.join("first.png"))?;
+    save_image(&image, folder.join("first.exr"))
+}
+
+fn main() -> Result<(), relume::Error> {
+    run(Path::new("."))
+}
