@@ -9,7 +9,7 @@ use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
 use crate::usage::Usage;
 use crate::{interpolation, interrupt, look, output, settings};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -79,7 +79,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     console.progress().expect(&stages(&settings, texels, extras.volume.is_some()));
     let began = Instant::now();
     let path = &options.output;
-    let write = |prt: &Prt| prt.write(path).with_context(|| format!("cannot write {}", path.display()));
+    let write = |prt: &Prt| Ok::<(), anyhow::Error>(relume::save_prt(prt, path)?);
     let prt = match settings.time {
         Some(seconds) => {
             let deadline = console.began() + Duration::from_secs_f32(seconds);

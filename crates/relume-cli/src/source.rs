@@ -3,7 +3,7 @@
 use crate::console::Console;
 use crate::mistake::{self, Kind};
 use crate::usage::Usage;
-use anyhow::{Context, Result};
+use anyhow::Result;
 use coeff_io::Prt;
 use probe_io::{Environment, Layout, LoadOptions, Negatives, NonFinite};
 use scene::Scene;
@@ -335,7 +335,7 @@ pub(crate) fn render_command(path: &Path, probe: &str) -> String {
 /// Reads a baked file.
 pub(crate) fn prt(path: &Path) -> Result<Prt> {
     check_baked(path)?;
-    Prt::read(path).with_context(|| path.display().to_string())
+    Ok(relume::load_prt(path)?)
 }
 
 /// Parses a number of bands that the harmonics support.

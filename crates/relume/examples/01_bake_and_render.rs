@@ -8,10 +8,10 @@ pub(crate) fn run(folder: &Path) -> Result<(), relume::Error> {
     // A file works as well: load_scene("house.glb").
     let scene = load_scene("builtin:sphere-on-plane")?;
     let prt = Bake::new(&scene).settings(Preset::Draft).run()?;
-    prt.write(&folder.join("first.prt"))?;
+    save_prt(&prt, folder.join("first.prt"))?;
 
     // The file holds all that a renderer needs.
-    let prt = Prt::read(&folder.join("first.prt"))?;
+    let prt = load_prt(folder.join("first.prt"))?;
     let sky = load_light_probe("builtin:sky")?;
     let frame = Frame { tonemap: Tonemap::Filmic, supersample: 2, ..Frame::plain(prt.cameras[0].clone(), 320, 180) };
     let image = Renderer::new(&prt, &sky)?.draw(&frame)?;

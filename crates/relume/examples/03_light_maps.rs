@@ -11,7 +11,7 @@ pub(crate) fn run(folder: &Path) -> Result<(), relume::Error> {
     // Meshes without usable light-map coordinates are unwrapped. The maps hold this one light.
     let bake = Bake::new(&scene).settings(Preset::Draft).light_maps(LightMapOptions::new(64)).fixed_light(&sky);
     let prt = bake.run()?;
-    prt.write(&folder.join("maps.prt"))?;
+    save_prt(&prt, folder.join("maps.prt"))?;
     if let Some(maps) = &prt.maps {
         export::maps(maps, Container::Ktx2, &folder.join("textures"))?;
     }

@@ -1,8 +1,8 @@
 //! A bake with all its outputs, step by step.
 
 use crate::{BakeSettings, Error, LightMapOptions, TransferTextureOptions, Window, bake_within, fixed_light};
-use bake::{Extras, Progress, ProgressFn, VolumeSettings};
-use coeff_io::Prt;
+use bake::{Compression, Extras, Progress, ProgressFn, VolumeSettings};
+use coeff_io::{Effect, Effects, Prt};
 use probe_io::Environment;
 use scene::Scene;
 use std::borrow::Cow;
@@ -27,6 +27,8 @@ pub struct Bake<'a> {
     settings: BakeSettings,
     light_maps: Option<LightMapOptions>,
     transfer_textures: Option<TransferTextureOptions>,
+    is_storage_automatic: bool,
+    compression: Compression,
     volume: Option<VolumeSettings>,
     light: Option<&'a Environment>,
     time: Option<Duration>,
@@ -52,6 +54,8 @@ impl<'a> Bake<'a> {
             settings,
             light_maps: None,
             transfer_textures: None,
+            is_storage_automatic: false,
+            compression: Compression::default(),
             volume: None,
             light: None,
             time: None,
@@ -72,6 +76,16 @@ impl<'a> Bake<'a> {
     /// And transfer textures, which exclude light maps; meshes without usable light-map coordinates are unwrapped.
     pub fn transfer_textures(self, options: TransferTextureOptions) -> Self {
         Self { transfer_textures: Some(options), ..self }
+    }
+
+    /// And transfer textures where glossy surfaces call for them and nothing else was asked for, as the command line does by default.
+    pub fn automatic_storage(self) -> Self {
+        Self { is_storage_automatic: true, ..self }
+    }
+
+    /// How rows of glossy transfer are compressed.
+    pub fn compression(self, compression: Compression) -> Self {
+        Self { compression, ..self }
     }
 
     /// And an irradiance volume, which lights dynamic objects.
@@ -104,18 +118,28 @@ impl<'a> Bake<'a> {
             Some(options) => Some(options.settings(scene.to_mut(), &|_| ())?),
             None => None,
         };
-        let textures = match &self.transfer_textures {
+        let chosen = match self.is_storage_automatic && maps.is_none() && self.transfer_textures.is_none() {
+            true => bake::storage(&scene, &self.settings)?.texels.map(|texels| chosen_textures(texels, &self.settings)),
+            false => None,
+        };
+        let textures = match self.transfer_textures.as_ref().or(chosen.as_ref()) {
             Some(options) => Some(options.settings(scene.to_mut(), &|_| ())?),
             None => None,
         };
         let bands = fixed_bands(self.settings.bands, maps.is_some());
         let light = self.light.map(|light| fixed_light(light, bands, Window::Auto)).transpose()?;
-        let extras = Extras { maps, textures, volume: self.volume, light, ..Extras::default() };
+        let extras = Extras { maps, textures, volume: self.volume, light, compression: self.compression };
         match self.time {
             Some(time) => run_within(&scene, &self.settings, &extras, time, self.progress),
             None => Ok(bake::bake_with(&scene, &self.settings, &extras, self.progress)?),
         }
     }
+}
+
+/// Transfer textures with normal maps where the settings allow them.
+fn chosen_textures(texels: u32, settings: &BakeSettings) -> TransferTextureOptions {
+    let normal_maps = !matches!(&settings.effects, Effects::Only(list) if !list.contains(&Effect::NormalMaps));
+    TransferTextureOptions { normal_maps, ..TransferTextureOptions::new(texels) }
 }
 
 /// Bands of a fixed light: glossy bounces take all bands that reach a product of two functions of `bands` bands, light maps the first.

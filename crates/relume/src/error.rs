@@ -49,9 +49,25 @@ pub enum Error {
     /// A bake failed or was cancelled.
     #[error(transparent)]
     Bake(#[from] bake::Error),
-    /// A `.prt` file could not be read or written.
+    /// A `.prt` file could not be read.
+    #[error("cannot read {}", path.display())]
+    ReadPrt {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: coeff_io::Error,
+    },
+    /// A `.prt` file could not be written.
+    #[error("cannot write {}", path.display())]
+    WritePrt {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: coeff_io::Error,
+    },
+    /// An export failed.
     #[error(transparent)]
-    Prt(#[from] coeff_io::Error),
+    Export(#[from] coeff_io::Error),
     /// A dynamic object cannot stand in a scene.
     #[error(transparent)]
     DynamicObject(#[from] coeff_io::VisitorError),

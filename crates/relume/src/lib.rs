@@ -11,7 +11,7 @@
 //! #   std::env::set_current_dir(&folder).expect("the folder");
 //!     let scene = load_scene("wall.gltf")?;
 //!     let prt = Bake::new(&scene).settings(Preset::Draft).run()?;
-//!     prt.write("wall.prt".as_ref())?;
+//!     save_prt(&prt, "wall.prt")?;
 //!
 //!     let sky = load_light_probe("builtin:sky")?;
 //!     let frame = Frame::plain(prt.cameras[0].clone(), 320, 180);
@@ -26,7 +26,7 @@
 //! | Choose settings | [`Preset`], [`BakeSettings`], [`LightSpectrum`] |
 //! | Bake, also within a time | [`Bake`] |
 //! | Light maps, transfer textures, an irradiance volume, a fixed light | [`Bake`], [`LightMapOptions`], [`AtlasOptions`] |
-//! | Keep the result in a `.prt` file | [`Prt::write`], [`Prt::read`] |
+//! | Keep the result in a `.prt` file | [`save_prt`], [`load_prt`] |
 //! | Draw, on the GPU or the CPU | [`Renderer`], [`save_image`] |
 //!
 //! The folder `examples` has numbered programs, from the first image to light maps, dynamic objects and the coefficients
@@ -36,12 +36,14 @@ mod atlas;
 mod bake_job;
 mod bake_within;
 mod builtin;
+mod enclosure;
 mod error;
 mod image_file;
 mod light_probe;
 mod light_spectrum;
 pub mod prelude;
 mod preset;
+mod prt_file;
 mod renderer;
 mod schedule;
 mod texture_options;
@@ -52,12 +54,14 @@ pub use bake_job::{Bake, fixed_bands};
 pub use bake_within::{achieved_error, bake_within};
 pub use builtin::load_scene;
 pub use coeff_io::{Prt, Settings as BakeSettings};
+pub use enclosure::{Enclosure, find_enclosure, predict_enclosure};
 pub use error::Error;
 pub use image_file::{ImageFormat, save_image, write_image};
 pub use light_probe::{load_light_probe, load_light_probe_with};
 pub use light_spectrum::LightSpectrum;
 pub use preset::Preset;
 pub use probe_io::Environment as LightProbe;
+pub use prt_file::{load_prt, save_prt};
 pub use renderer::{Backend, Device, Renderer, RendererOptions};
 pub use texture_options::{LightMapOptions, Pages, TransferTextureOptions};
 pub use window::{Window, fixed_light};

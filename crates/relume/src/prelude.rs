@@ -2,7 +2,8 @@
 
 pub use crate::{
     AtlasOptions, Backend, Bake, BakeSettings, Device, ImageFormat, LightMapOptions, LightProbe, LightSpectrum, Preset,
-    Renderer, RendererOptions, TransferTextureOptions, Window, fixed_light, load_light_probe, load_scene, save_image,
+    Renderer, RendererOptions, TransferTextureOptions, Window, fixed_light, load_light_probe, load_prt, load_scene,
+    save_image, save_prt,
 };
 pub use bake::VolumeSettings;
 pub use coeff_io::{Bounces, Camera, Prt, Quality, Refine};
