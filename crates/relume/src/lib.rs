@@ -1,22 +1,25 @@
 //! Precomputed Radiance Transfer: bakes how a scene carries light once, and relights it under any environment.
 //!
-//! A program that bakes a glTF scene, keeps the result, and draws it under a sky:
+//! A program that bakes a glTF scene, keeps the result, and draws it under a light probe:
 //!
 //! ```
 //! use relume::prelude::*;
 //!
 //! fn main() -> Result<(), relume::Error> {
 //! #   let folder = tempfile::tempdir().expect("a folder");
-//! #   std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/wall.gltf"), folder.path().join("wall.gltf")).unwrap();
+//! #   for name in ["pavilion.glb", "evening.hdr"] {
+//! #       let asset = format!("{}/../../assets/{name}", env!("CARGO_MANIFEST_DIR"));
+//! #       std::fs::copy(asset, folder.path().join(name)).expect("an asset of the project");
+//! #   }
 //! #   std::env::set_current_dir(&folder).expect("the folder");
-//!     let scene = load_scene("wall.gltf")?;
+//!     let scene = load_scene("pavilion.glb")?;
 //!     let prt = Bake::new(&scene).settings(Preset::Draft).run()?;
-//!     save_prt(&prt, "wall.prt")?;
+//!     save_prt(&prt, "pavilion.prt")?;
 //!
-//!     let sky = load_light_probe("builtin:sky")?;
+//!     let evening = load_light_probe("evening.hdr")?;
 //!     let frame = Frame::plain(prt.cameras[0].clone(), 320, 180);
-//!     let image = Renderer::new(&prt, &sky)?.draw(&frame)?;
-//!     save_image(&image, "wall.png")
+//!     let image = Renderer::new(&prt, &evening)?.draw(&frame)?;
+//!     save_image(&image, "pavilion.png")
 //! }
 //! ```
 //!
