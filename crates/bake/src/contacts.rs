@@ -19,7 +19,7 @@ use raytrace::{Hit, Ray};
 use scene::{Mesh, Scene};
 use sh_math::Bands;
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// Bands and rays of the look at light, as those that find bends.
 const BANDS: u32 = 3;
@@ -32,7 +32,6 @@ const LEVEL: f32 = 0.7;
 const STEPS: usize = 10;
 /// Error of interpolation of light of the sky from where an edge is cut, against an open receiver's light.
 const BEND: f32 = 0.15;
-
 /// Difference of what a cover and the surface beyond it send on, from where an edge is cut.
 const SENT: f32 = 0.05;
 
@@ -51,8 +50,18 @@ pub(crate) fn cut_at_contacts<'a>(
     let bounces = ledge::matters(settings);
     let mut cuts = Cuts::default();
     for mesh in &scene.meshes {
-        add_contacts(mesh, &gatherer, (bounces, shortest), &mut cuts);
+        let two_sided = scene.materials[mesh.material as usize].double_sided;
+        let ways = ways(mesh, shortest, two_sided);
+        let one = |worker: &mut Worker, (_, ends): &(Edge, [Receiver; 2])| {
+            if monitor.is_cancelled() {
+                return None;
+            }
+            Way::new(world, ends)?.cut(&gatherer, bounces, worker)
+        };
+        let found: Vec<Option<f32>> = ways.par_iter().map_init(Worker::new, one).collect();
         monitor.check()?;
+        let found = ways.iter().zip(found).filter_map(|((edge, _), share)| Some((*edge, share?)));
+        found.for_each(|(edge, share)| cuts.add(mesh, edge, share));
     }
     if !cuts.is_empty() {
         cuts.apply(scene.to_mut());
@@ -60,21 +69,30 @@ pub(crate) fn cut_at_contacts<'a>(
     Ok(scene)
 }
 
-/// Finds the edges of a mesh that come out from under a cover and bend there.
-fn add_contacts(mesh: &Mesh, gatherer: &Gatherer<'_>, (bounces, shortest): (bool, f32), cuts: &mut Cuts) {
+/// The edges of a mesh that are longer than `shortest`, from either end and on each side that is drawn, with their ends as receivers. These have
+/// the normal of the triangles at the edge: that of a vertex in a crease leans over to the other face.
+fn ways(mesh: &Mesh, shortest: f32, two_sided: bool) -> Vec<(Edge, [Receiver; 2])> {
     let faces = FaceSums::of(mesh);
-    let is_long = |edge: &Edge| length(mesh, *edge) > shortest;
-    let all: BTreeSet<Edge> = mesh.triangles.iter().flat_map(edges).map(sorted).filter(is_long).collect();
-    let all: Vec<Edge> = all.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]).collect();
-    let found: Vec<Option<f32>> = all
-        .par_iter()
-        .map_init(Worker::new, |worker, edge| {
-            let ends = edge.map(|v| faces.receiver(mesh, v as usize));
-            Way::new(gatherer.world, &ends)?.cut(gatherer, bounces, worker)
-        })
-        .collect();
-    let found = all.into_iter().zip(found).filter_map(|(edge, share)| Some((edge, share?)));
-    found.for_each(|(edge, share)| cuts.add(mesh, edge, share));
+    let mut normals: BTreeMap<Edge, Vec3> = BTreeMap::new();
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
+        for edge in edges(triangle).map(sorted).into_iter().filter(|edge| length(mesh, *edge) > shortest) {
+            *normals.entry(edge).or_default() += (b - a).cross(c - a);
+        }
+    }
+    let mut ways = Vec::new();
+    for ([a, b], sum) in normals {
+        let Some(normal) = sum.try_normalize() else { continue };
+        for edge in [[a, b], [b, a]] {
+            let front = |v: u32| Receiver { normal, geometric_normal: normal, ..faces.receiver(mesh, v as usize) };
+            let front = edge.map(front);
+            ways.push((edge, front));
+            if two_sided {
+                ways.push((edge, front.map(|end| end.back())));
+            }
+        }
+    }
+    ways
 }
 
 /// The way along an edge from an end under a cover, or within the width of the gap from its rim.

@@ -77,4 +77,4 @@ pub use progress::{Progress, Stage};
 pub use receivers::{Receiver, Receivers};
 pub use refine::{refine, refine_watched};
 pub use sample::{Sampled, sample};
-pub use storage::{StorageChoice, storage};
+pub use storage::{StorageChoice, storage, storage_watched};

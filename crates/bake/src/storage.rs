@@ -36,6 +36,14 @@ pub struct StorageChoice {
 /// # Errors
 /// As [`crate::plan`].
 pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Error> {
+    storage_watched(scene, settings, &|_| ControlFlow::Continue(()))
+}
+
+/// [`storage`] that reports progress and can be cancelled.
+///
+/// # Errors
+/// As [`storage`], and [`Error::Cancelled`].
+pub fn storage_watched(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<StorageChoice, Error> {
     settings::check(settings)?;
     let matte = |refined| {
         let reason = "vertices: no reflection is simulated by direction".into();
@@ -46,9 +54,9 @@ pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Erro
         return matte(None);
     }
     check_size(scene)?;
-    let split = Halved::new(scene, settings, UNWATCHED)?;
+    let split = Halved::new(scene, settings, progress)?;
     if !simulates(&prepare(split.scene(), settings, &Extras::default())?.plan, Effect::Glossy) {
-        return matte(whole(split, settings)?);
+        return matte(whole(split, settings, progress)?);
     }
     let shines = shining(scene);
     let bent = scene.meshes.iter().any(|mesh| {
@@ -59,7 +67,7 @@ pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Erro
     // As finely as shadows between the vertices ask for, whether the file is to be cut so or not.
     let fine = match settings.refine {
         Refine::Auto => None,
-        _ => Some(Halved::new(scene, &Settings { refine: Refine::Auto, ..settings.clone() }, UNWATCHED)?),
+        _ => Some(Halved::new(scene, &Settings { refine: Refine::Auto, ..settings.clone() }, progress)?),
     };
     let vertices = |scene: &Scene| scene.meshes.iter().map(|mesh| mesh.positions.len()).sum::<usize>();
     let (before, after) = (vertices(scene), vertices(fine.as_ref().unwrap_or(&split).scene()));
@@ -79,16 +87,13 @@ pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Erro
             format!("vertices: {before} of them hold the error asked for ({growth:.1} times as many would do it all)"),
         ),
     };
-    let refined = if texels.is_none() { whole(split, settings)? } else { None };
+    let refined = if texels.is_none() { whole(split, settings, progress)? } else { None };
     Ok(StorageChoice { texels, reason, refined })
 }
 
-/// Nobody asks how far it is.
-const UNWATCHED: ProgressFn<'_> = &|_| ControlFlow::Continue(());
-
 /// The scene with all its cuts, if there are any.
-fn whole(split: Halved<'_>, settings: &Settings) -> Result<Option<Scene>, Error> {
-    Ok(match split.cut(settings, UNWATCHED)? {
+fn whole(split: Halved<'_>, settings: &Settings, progress: ProgressFn<'_>) -> Result<Option<Scene>, Error> {
+    Ok(match split.cut(settings, progress)? {
         Cow::Owned(scene) => Some(scene),
         Cow::Borrowed(_) => None,
     })

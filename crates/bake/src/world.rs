@@ -20,6 +20,8 @@ const MAX_VERTICES: usize = (1 << 29) - 1;
 
 /// Most surfaces behind each other that a way is followed through.
 pub(crate) const MOST_CROSSINGS: usize = 256;
+/// Triangles that are met for each of them at most: around the tip of a fan all are met in one place.
+const MOST_MET: usize = 4;
 
 /// Share of a corner that is none but for rounding.
 const RIM: f32 = 1e-6;
@@ -224,8 +226,10 @@ impl<'a> World<'a> {
         // What was met in the place of the last.
         let mut here: Vec<Hit> = Vec::new();
         let solid = |triangle, u, v| self.solid(triangle, u, v);
+        let mut rounds = 0;
         let next = move || {
-            loop {
+            while rounds < MOST_MET * MOST_CROSSINGS {
+                rounds += 1;
                 let hit = match here.last() {
                     Some(last) => self.tracer.closest_after(&ray, last, &solid)?,
                     None => self.closest(&ray)?,
@@ -238,6 +242,7 @@ impl<'a> World<'a> {
                     return Some(hit);
                 }
             }
+            None
         };
         std::iter::from_fn(next).take(MOST_CROSSINGS)
     }

@@ -75,13 +75,17 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     output::check(&options.output, &scene.files)?;
     let probe = options.probe.as_ref().map(|probe| (probe, &options.read));
     let (extras, refined) = options.extras.of(&mut scene, options.bake.storage, &settings, probe, console)?;
-    let texels = extras.maps.is_some() || extras.textures.is_some();
-    console.progress().expect(&stages(&settings, texels, extras.volume.is_some()));
+    let texels = texels_per_receiver(refined.as_ref().unwrap_or(&scene), &extras);
+    let mut stages = stages(&settings, texels, extras.volume.is_some());
+    stages.retain(|(name, _)| *name != "refinement" || refined.is_none());
+    console.progress().expect(&stages);
     let began = Instant::now();
     let path = &options.output;
     let write = |prt: &Prt| Ok::<(), anyhow::Error>(relume::save_prt(prt, path)?);
     let prt = match settings.time {
         Some(seconds) => {
+            // The first results are of the scene as it is.
+            drop(refined);
             let deadline = console.began() + Duration::from_secs_f32(seconds);
             interrupt::leave_at(deadline)?;
             let keep = |prt: &Prt| {
@@ -139,8 +143,22 @@ pub(crate) fn watched(progress: &Progress) -> impl Fn(&bake::Progress) -> Contro
     }
 }
 
+/// Receivers that a scene of few triangles has at least once it is split.
+const FEWEST_RECEIVERS: f64 = 10_000.0;
+/// Share of the texels of a page that charts fill, about.
+const FILLED: f64 = 0.6;
+
+/// Texels that are baked, over the receivers; both are guesses.
+fn texels_per_receiver(scene: &scene::Scene, extras: &bake::Extras) -> f64 {
+    let maps = extras.maps.iter().flat_map(|maps| &maps.sheets);
+    let textures = extras.textures.iter().flat_map(|textures| &textures.sheets);
+    let texels: f64 = maps.chain(textures).map(|sheet| f64::from(sheet.width) * f64::from(sheet.height)).sum();
+    let receivers: usize = scene.meshes.iter().map(|mesh| mesh.positions.len()).sum();
+    FILLED * texels / FEWEST_RECEIVERS.max(receivers as f64)
+}
+
 /// The stages that a bake will have, with about how long each takes against the others.
-pub(crate) fn stages(settings: &Settings, texels: bool, probes: bool) -> Vec<(&'static str, f64)> {
+pub(crate) fn stages(settings: &Settings, texels_per_receiver: f64, probes: bool) -> Vec<(&'static str, f64)> {
     let bounces = settings.bounces != Bounces::Fixed(0);
     let stages = [
         ("refinement", 2.0, settings.refine == Refine::Auto),
@@ -148,7 +166,8 @@ pub(crate) fn stages(settings: &Settings, texels: bool, probes: bool) -> Vec<(&'
         ("visibility", 4.0, true),
         ("backs and near surfaces", 3.0, bounces),
         ("bounces", 1.0, bounces),
-        ("texels", 6.0, texels),
+        // A texel sees the sky and what blocks it, as a receiver does in two stages.
+        ("texels", 7.0 * texels_per_receiver, texels_per_receiver > 0.0),
         ("probes", 3.0, probes),
         ("writing", 0.1, true),
     ];

@@ -126,7 +126,7 @@ fn bake(
 ) -> Result<Directional> {
     let light = relume::fixed_light(environment, settings.bands, window.into()).map_err(crate::usage::fault)?;
     let progress = console.progress();
-    progress.expect(&baking::stages(settings, true, false));
+    progress.expect(&baking::stages(settings, 1.0, false));
     bake::directional(scene, settings, sheets, &light, &baking::watched(&progress)).map_err(baking::fault)
 }
 

@@ -134,7 +134,9 @@ impl ExtraOptions {
                 None => Place::Transfer(TEXELS),
             },
             Storage::Auto => {
-                let choice = bake::storage(scene, settings).map_err(crate::bake::fault)?;
+                let progress = console.progress();
+                let watched = crate::bake::watched(&progress);
+                let choice = bake::storage_watched(scene, settings, &watched).map_err(crate::bake::fault)?;
                 match choice.texels {
                     Some(texels) => {
                         console.notice(&format!("storage: {}", choice.reason));

@@ -4,6 +4,7 @@ use bake::{Look, Price};
 use coeff_io::{Prt, Quality};
 use glam::Vec3;
 use scene::{Bounds, Scene};
+use std::collections::BTreeSet;
 
 /// A mesh that encloses a scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,6 +85,7 @@ pub fn predict_enclosure(scene: &Scene, price: &Price, quality: Quality) -> Opti
     let bounds = |mesh: usize| Some((mesh, scene.meshes[mesh].bounds()?));
     let lit: Vec<Lit> = (0..scene.meshes.len()).filter(|&mesh| takes_light(mesh)).filter_map(bounds).collect();
     let Around { outer, inner, middle } = around(&lit)?;
+    let inner: BTreeSet<usize> = inner.into_iter().collect();
     let looks = price.looks.iter().filter(|look| inner.contains(&(look.mesh as usize)));
     let is_dark = |look: &&Look| look.first.abs() <= CLOSED * OPEN;
     let all: f64 = looks.clone().map(|look| look.receivers).sum();
