@@ -1,5 +1,7 @@
 //! Why a bake could not be made.
 
+use crate::SettingField;
+
 /// What stopped a bake; the message says what, where and what to do.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -35,8 +37,8 @@ pub enum Error {
     /// A setting is outside its range.
     #[error("setting '{setting}' is {value}: {allowed}")]
     Setting {
-        /// Name on the command line.
-        setting: &'static str,
+        /// Which one.
+        setting: SettingField,
         /// The value given.
         value: String,
         /// What is allowed, as a sentence.
@@ -44,7 +46,7 @@ pub enum Error {
     },
     /// The coefficients do not fit into the memory allowed.
     #[error(
-        "the transfer of {receivers} receivers needs {needed} bytes, more than the {allowed} of --memory; use fewer --bands or allow more"
+        "the transfer of {receivers} receivers needs {needed} bytes, more than the {allowed} allowed; use fewer bands or allow more memory"
     )]
     Memory {
         /// Receivers of the scene.
@@ -56,7 +58,7 @@ pub enum Error {
     },
     /// Light maps or transfer textures do not fit into the memory allowed.
     #[error(
-        "maps and gloss of {texels} texels and vertices need {needed} bytes, more than the {allowed} of --memory; use fewer --texels, fewer --bands, a fixed light, or allow more"
+        "maps and gloss of {texels} texels and vertices need {needed} bytes, more than the {allowed} allowed; use fewer texels, fewer bands, a fixed light, or allow more memory"
     )]
     MapMemory {
         /// Texels that surfaces touch.
@@ -68,7 +70,7 @@ pub enum Error {
     },
     /// The probes of a volume do not fit into the memory that the light between surfaces leaves.
     #[error(
-        "the volume of {probes} probes needs {needed} bytes, more than the {left} that are left of --memory; use a wider --volume spacing, fewer --volume-levels or allow more"
+        "the volume of {probes} probes needs {needed} bytes, more than the {left} that are left; use a wider spacing, fewer levels or allow more memory"
     )]
     VolumeMemory {
         /// Probes of the volume.

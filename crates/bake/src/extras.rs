@@ -11,7 +11,7 @@ use crate::passes::Monitor;
 use crate::plan::allowed;
 use crate::receivers::Receivers;
 use crate::repair::Repair;
-use crate::{Error, MapSettings, VolumeSettings};
+use crate::{Error, MapSettings, SettingField, VolumeSettings};
 use coeff_io::{Bounces, Effect, MapLight, Plan, Prt, Settings};
 use scene::Scene;
 use scene::lightmap::Texel;
@@ -47,7 +47,7 @@ impl Extras {
         let Some(textures) = &self.textures else { return Ok(()) };
         if self.maps.is_some() {
             let value = "light maps and transfer textures".to_owned();
-            return Err(Error::Setting { setting: "storage", value, allowed: "use one of the two" });
+            return Err(Error::Setting { setting: SettingField::Storage, value, allowed: "use one of the two" });
         }
         check_sheets(&textures.sheets, textures.dilation, scene)
     }
@@ -61,7 +61,7 @@ impl Extras {
         }
         let value = format!("{} of {} coefficients", light.name, light.coefficients.len());
         let allowed = "give as many coefficients as the bake has, all finite";
-        Err(Error::Setting { setting: "--lighting fixed", value, allowed })
+        Err(Error::Setting { setting: SettingField::FixedLight, value, allowed })
     }
 
     /// Whether diffuse light will be drawn by the normals of normal maps.

@@ -220,6 +220,6 @@ pub(crate) fn check_count(scene: &str, mesh: &Mesh) -> Result<(), Error> {
 }
 
 fn too_fine(scene: &str, count: usize) -> Error {
-    let what = "triangles after splitting (use a larger --refine)";
+    let what = "triangles after splitting (allow longer edges)";
     Error::TooLarge { scene: scene.to_owned(), what, count, limit: MOST_TRIANGLES }
 }

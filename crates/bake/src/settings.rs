@@ -1,6 +1,6 @@
 //! Presets and limits of the bake settings.
 
-use crate::Error;
+use crate::{Error, SettingField};
 use coeff_io::{BandChoice, Bounces, Effect, Effects, Quality, Refine, Sampler, Settings};
 
 /// Most bands that a bake may ask for: 1,024 coefficients per receiver and channel.
@@ -50,22 +50,26 @@ pub fn fine() -> Settings {
 pub fn check(settings: &Settings) -> Result<(), Error> {
     let refuse = |setting, value: String, allowed| Err(Error::Setting { setting, value, allowed });
     if settings.bands == 0 || settings.bands > MAX_BANDS {
-        return refuse("--bands", settings.bands.to_string(), "use 1 to 32");
+        return refuse(SettingField::Bands, settings.bands.to_string(), "use 1 to 32");
     }
     check_light(settings)?;
     match settings.quality {
         Quality::Rays(n) if n == 0 || n > MAX_RAYS => {
-            return refuse("--rays", n.to_string(), "use 1 to 65536");
+            return refuse(SettingField::Rays, n.to_string(), "use 1 to 65536");
         }
         Quality::Rays(n) if n < MIN_STRATIFIED && settings.sampler == Sampler::Stratified => {
-            return refuse("--rays", n.to_string(), "the stratified sequence covers the whole sphere: use 16 or more");
+            return refuse(
+                SettingField::Rays,
+                n.to_string(),
+                "the stratified sequence covers the whole sphere: use 16 or more",
+            );
         }
         Quality::Error(e) if !(1e-4..=1.0).contains(&e) => {
-            return refuse("--error", e.to_string(), "use 0.0001 to 1");
+            return refuse(SettingField::Error, e.to_string(), "use 0.0001 to 1");
         }
         Quality::Error(_) if settings.sampler != Sampler::OwenSobol => {
-            let allowed = "only the Owen-scrambled Sobol sequence can go on until an error is met; give --rays as well";
-            return refuse("--sampler", format!("{:?}", settings.sampler), allowed);
+            let allowed = "only the Owen-scrambled Sobol sequence can go on until an error is met; give a fixed number of rays as well";
+            return refuse(SettingField::Sampler, format!("{:?}", settings.sampler), allowed);
         }
         Quality::Rays(_) | Quality::Error(_) => {}
     }
@@ -74,7 +78,7 @@ pub fn check(settings: &Settings) -> Result<(), Error> {
         && !list.contains(&Effect::Visibility)
     {
         return refuse(
-            "--effects",
+            SettingField::Effects,
             "interreflection alone".into(),
             "bounces need to know what is seen: add visibility",
         );
@@ -82,10 +86,10 @@ pub fn check(settings: &Settings) -> Result<(), Error> {
     if let Refine::Edge(length) = settings.refine
         && !(length > 0.0 && length.is_finite())
     {
-        return refuse("--refine", length.to_string(), "give a length above 0 in metres, auto or off");
+        return refuse(SettingField::Refine, length.to_string(), "give a length above 0 in metres, auto or off");
     }
     match settings.bounces {
-        Bounces::Fixed(n) if n > MAX_BOUNCES => refuse("--bounces", n.to_string(), "use 0 to 10000, or auto"),
+        Bounces::Fixed(n) if n > MAX_BOUNCES => refuse(SettingField::Bounces, n.to_string(), "use 0 to 10000, or auto"),
         Bounces::Fixed(_) | Bounces::Auto => Ok(()),
     }
 }
@@ -97,5 +101,5 @@ fn check_light(settings: &Settings) -> Result<(), Error> {
         return Ok(());
     }
     let allowed = "give the norm of every band that is asked for, or none";
-    Err(Error::Setting { setting: "--probe", value: format!("a light of bands {light:?}"), allowed })
+    Err(Error::Setting { setting: SettingField::Light, value: format!("a light of bands {light:?}"), allowed })
 }

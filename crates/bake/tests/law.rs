@@ -98,10 +98,10 @@ fn bad_settings_name_themselves() {
     let scene = grey("plane", 0.5);
     let refused =
         |s: Settings| bake::bake(&scene, &s, &|_| ControlFlow::Continue(())).expect_err("refused").to_string();
-    assert!(refused(Settings { bands: 0, ..settings::standard() }).contains("--bands"), "bands");
-    assert!(refused(Settings { quality: Quality::Rays(0), ..settings::standard() }).contains("--rays"), "rays");
+    assert!(refused(Settings { bands: 0, ..settings::standard() }).contains("'bands'"), "bands");
+    assert!(refused(Settings { quality: Quality::Rays(0), ..settings::standard() }).contains("'rays'"), "rays");
     assert!(
-        refused(Settings { quality: Quality::Error(f32::NAN), ..settings::standard() }).contains("--error"),
+        refused(Settings { quality: Quality::Error(f32::NAN), ..settings::standard() }).contains("'error'"),
         "error"
     );
     let empty = scene::Scene::default();

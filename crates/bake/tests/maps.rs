@@ -344,8 +344,8 @@ fn wrong_sheets_are_refused() {
         let asked = Settings { memory, ..fixed(3, Sampler::OwenSobol, 64, 0) };
         bake::bake_with(&scene, &asked, &extras, &|_| ControlFlow::Continue(())).expect_err("refused").to_string()
     };
-    assert!(refused(SheetSettings { width: 0, ..sheet.clone() }, 1 << 30).contains("--texels"));
+    assert!(refused(SheetSettings { width: 0, ..sheet.clone() }, 1 << 30).contains("texels"));
     assert!(refused(SheetSettings { meshes: vec![0, 0], ..sheet.clone() }, 1 << 30).contains("one sheet"));
     assert!(refused(SheetSettings { meshes: vec![9], ..sheet.clone() }, 1 << 30).contains("mesh 9"));
-    assert!(refused(sheet, 20_000).contains("--memory"));
+    assert!(refused(sheet, 20_000).contains("memory"));
 }

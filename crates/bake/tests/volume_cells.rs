@@ -157,9 +157,9 @@ fn what_cannot_be_is_refused() {
     };
     let spaced = |step| VolumeSettings { steps: VolumeSteps::Spacing(step), ..VolumeSettings::standard() };
     assert!(sentence(&settings, spaced(1e-4)).contains("wider spacing"));
-    assert!(sentence(&settings, spaced(0.03)).contains("--memory"), "{}", sentence(&settings, spaced(0.03)));
+    assert!(sentence(&settings, spaced(0.03)).contains("memory"), "{}", sentence(&settings, spaced(0.03)));
     let deep = VolumeSettings { levels: 6, ..spaced(0.1) };
-    assert!(sentence(&settings, deep.clone()).contains("--volume-levels"), "{}", sentence(&settings, deep));
+    assert!(sentence(&settings, deep.clone()).contains("fewer levels"), "{}", sentence(&settings, deep));
     let little = Settings { memory: 4 << 20, ..settings };
     assert!(sentence(&little, VolumeSettings::standard()).contains("probes needs"));
 }

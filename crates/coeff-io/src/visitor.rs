@@ -14,10 +14,10 @@ use sh_math::Bands;
 #[non_exhaustive]
 pub enum VisitorError {
     /// The scene has no volume.
-    #[error("the scene holds no irradiance volume to light a moving object with: bake it with --volume")]
+    #[error("the scene holds no irradiance volume to light a moving object with: bake it with a volume")]
     NoVolume,
     /// The light of the volume is fixed.
-    #[error("the scene's volume holds the light of `{0}` alone: bake it without --lighting fixed for moving objects")]
+    #[error("the scene's volume holds the light of `{0}` alone: bake it without a fixed light for moving objects")]
     Fixed(String),
     /// The two files differ in what cannot be brought together.
     #[error("{0}")]

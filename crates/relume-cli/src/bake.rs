@@ -7,7 +7,7 @@ use crate::light_facts::LightFacts;
 use crate::progress::Progress;
 use crate::settings::BakeOptions;
 use crate::source::{self, ProbeSource, ReadOptions, SceneOptions};
-use crate::usage::Usage;
+use crate::usage::bake_fault as fault;
 use crate::{interpolation, interrupt, look, output, settings};
 use anyhow::Result;
 use coeff_io::{Bounces, Prt, Quality, Refine, Settings};
@@ -172,14 +172,6 @@ pub(crate) fn stages(settings: &Settings, texels_per_receiver: f64, probes: bool
         ("writing", 0.1, true),
     ];
     stages.into_iter().filter(|stage| stage.2).map(|(name, weight, _)| (name, weight)).collect()
-}
-
-/// A setting out of range is wrong usage; everything else is a failure.
-pub(crate) fn fault(error: bake::Error) -> anyhow::Error {
-    match error {
-        bake::Error::Setting { .. } => Usage(error.to_string()).into(),
-        other => other.into(),
-    }
 }
 
 /// [`fault`], where an error is one of the bake.

@@ -127,7 +127,7 @@ fn bake(
     let light = relume::fixed_light(environment, settings.bands, window.into()).map_err(crate::usage::fault)?;
     let progress = console.progress();
     progress.expect(&baking::stages(settings, 1.0, false));
-    bake::directional(scene, settings, sheets, &light, &baking::watched(&progress)).map_err(baking::fault)
+    bake::directional(scene, settings, sheets, &light, &baking::watched(&progress)).map_err(crate::usage::bake_fault)
 }
 
 impl OnScene {
@@ -142,7 +142,7 @@ impl OnScene {
             memory: self.memory.unwrap_or(standard.memory),
             ..standard
         };
-        bake::settings::check(&settings).map_err(|error| Usage(error.to_string()))?;
+        bake::settings::check(&settings).map_err(crate::usage::bake_fault)?;
         Ok(settings)
     }
 

@@ -4,7 +4,7 @@ use crate::console::Console;
 use crate::lens::{self, Lens};
 use crate::silence::silenced;
 use crate::source::{ProbeOptions, SceneOptions};
-use crate::usage::Usage;
+use crate::usage::{Usage, bake_fault};
 use crate::{output, settings, sheets};
 use anyhow::{Context, Result};
 use bake::SheetSettings;
@@ -161,7 +161,7 @@ impl Options {
             ..standard
         };
         bake::settings::check(&settings)
-            .map_err(|error| Usage(error.to_string().replace("--error", "--target-error")))?;
+            .map_err(|error| Usage(bake_fault(error).to_string().replace("--error", "--target-error")))?;
         Ok(settings)
     }
 }
@@ -192,7 +192,7 @@ fn machine() -> Machine {
 
 fn fault(error: Error) -> anyhow::Error {
     match error {
-        Error::Bake(error) => crate::bake::fault(error),
+        Error::Bake(error) => crate::usage::bake_fault(error),
         other => other.into(),
     }
 }

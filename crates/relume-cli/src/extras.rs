@@ -107,7 +107,7 @@ impl ExtraOptions {
         if storage != Storage::Texture && self.lighting != LightMode::Fixed {
             return Ok(false);
         }
-        let plan = bake::plan(scene, settings).map_err(crate::bake::fault)?;
+        let plan = bake::plan(scene, settings).map_err(crate::usage::bake_fault)?;
         Ok(plan.rows.iter().any(|row| row.effect == Effect::Glossy && row.simulate))
     }
 
@@ -136,7 +136,7 @@ impl ExtraOptions {
             Storage::Auto => {
                 let progress = console.progress();
                 let watched = crate::bake::watched(&progress);
-                let choice = bake::storage_watched(scene, settings, &watched).map_err(crate::bake::fault)?;
+                let choice = bake::storage_watched(scene, settings, &watched).map_err(crate::usage::bake_fault)?;
                 match choice.texels {
                     Some(texels) => {
                         console.notice(&format!("storage: {}", choice.reason));

@@ -59,8 +59,8 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
     let scene = options.scene.load(console)?;
     let storage = options.bake.storage;
     let began = Instant::now();
-    let price =
-        bake::price(&scene, &settings, &extras(&scene, storage), &|| began.elapsed()).map_err(crate::bake::fault)?;
+    let price = bake::price(&scene, &settings, &extras(&scene, storage), &|| began.elapsed())
+        .map_err(crate::usage::bake_fault)?;
     let text = if options.json {
         as_json(&scene, &settings, &price, light.as_ref())
     } else {
@@ -70,7 +70,7 @@ pub(crate) fn run(options: &Options, console: &Console) -> Result<()> {
             text.push_str(&meshes(&scene, &price.plan));
         }
         if storage == Storage::Auto {
-            let choice = bake::storage(&scene, &settings).map_err(crate::bake::fault)?;
+            let choice = bake::storage(&scene, &settings).map_err(crate::usage::bake_fault)?;
             let texels = choice.texels.map_or(String::new(), |n| format!(" (--texels {n} in all)"));
             let reason = format!("{}{texels}", choice.reason);
             text.push_str(&format!("\n{}", entry("storage:", INDENT, &reason)));

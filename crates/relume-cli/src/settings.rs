@@ -1,6 +1,5 @@
 //! The options that say how to bake, and the settings that they stand for.
 
-use crate::usage::Usage;
 use anyhow::Result;
 use bake::settings;
 use coeff_io::{BandChoice, Bounces, Effect, Effects, Quality, Refine, Sampler, Settings};
@@ -126,7 +125,7 @@ impl BakeOptions {
             seed: self.seed,
             memory: self.memory.unwrap_or(standard.memory),
         };
-        settings::check(&settings).map_err(|error| Usage(error.to_string()))?;
+        settings::check(&settings).map_err(crate::usage::bake_fault)?;
         Ok(settings)
     }
 }

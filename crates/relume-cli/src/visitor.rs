@@ -3,7 +3,7 @@
 use crate::console::Console;
 use crate::source;
 use anyhow::{Context, Result};
-use coeff_io::Prt;
+use coeff_io::{Prt, VisitorError};
 use glam::{Affine3A, DVec3, Quat, Vec3};
 use std::path::PathBuf;
 
@@ -72,9 +72,12 @@ impl Visitor {
         let Place { at, scale, yaw } = self.place;
         let at = local(scene, self.to.map_or(at, |to| at.lerp(to, f64::from(share))));
         let place = Affine3A::from_scale_rotation_translation(Vec3::splat(scale), Quat::from_rotation_y(yaw), at);
-        scene
-            .with_visitor(&self.prt, &place)
-            .with_context(|| format!("{} cannot stand in the scene", self.file.display()))
+        let placed = scene.with_visitor(&self.prt, &place).map_err(|error| match error {
+            VisitorError::NoVolume => anyhow::anyhow!("{error} (--volume)"),
+            VisitorError::Fixed(_) => anyhow::anyhow!("{error} (--volume without --lighting fixed)"),
+            other => other.into(),
+        });
+        placed.with_context(|| format!("{} cannot stand in the scene", self.file.display()))
     }
 }
 

@@ -1,6 +1,5 @@
 //! The options that say what irradiance volume to bake.
 
-use crate::usage::Usage;
 use anyhow::Result;
 use bake::{VolumePlace, VolumeSettings, VolumeSteps};
 use glam::Vec3;
@@ -35,7 +34,7 @@ impl VolumeOptions {
             levels: self.volume_levels.unwrap_or(standard.levels),
             resolution: self.volume_distances.unwrap_or(standard.resolution),
         };
-        settings.check().map_err(|error| Usage(error.to_string()))?;
+        settings.check().map_err(crate::usage::bake_fault)?;
         Ok(Some(settings))
     }
 }

@@ -228,9 +228,9 @@ fn texture(gpu: &Gpu, sheet: &TransferSheet, layers: u32, usage: wgpu::TextureUs
     let first = &sheet.levels[0];
     let (side, limit) = (first.width.max(first.height), gpu.limits.max_texture_dimension_2d);
     let what = || format!("a transfer texture of {}x{}", first.width, first.height);
-    Error::check_fits(what, u64::from(side), u64::from(limit), "texels along a side", "bake fewer --texels")?;
+    Error::check_fits(what, u64::from(side), u64::from(limit), "texels along a side", "bake fewer texels")?;
     let most = u64::from(gpu.limits.max_texture_array_layers);
-    Error::check_fits(what, u64::from(layers), most, "layers", "bake fewer --bands")?;
+    Error::check_fits(what, u64::from(layers), most, "layers", "bake fewer bands")?;
     Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("transfer texture"),
         size: wgpu::Extent3d { width: first.width, height: first.height, depth_or_array_layers: layers },

@@ -1,8 +1,8 @@
 //! Whether maps can be baked, before anything is.
 
 use super::{MapSettings, SheetSettings, functions};
-use crate::Error;
 use crate::field::Field;
+use crate::{Error, SettingField};
 use coeff_io::{Plan, Settings};
 use scene::Scene;
 use scene::lightmap::texels;
@@ -55,21 +55,27 @@ pub(crate) fn check_sheets(sheets: &[SheetSettings], dilation: u32, scene: &Scen
     for sheet in sheets {
         if !sides.contains(&sheet.width) || !sides.contains(&sheet.height) {
             let value = format!("{} x {}", sheet.width, sheet.height);
-            return refuse("--texels", value, "use sheets of 1 to 8192 texels along each side");
+            return refuse(SettingField::Texels, value, "use sheets of 1 to 8192 texels along each side");
         }
     }
     let all: u64 = sheets.iter().map(|sheet| u64::from(sheet.width) * u64::from(sheet.height)).sum();
     if all > MAX_TEXELS {
-        return refuse("--texels", format!("{all} in all"), "use sheets of 2^31 texels at most together");
+        return refuse(SettingField::Texels, format!("{all} in all"), "use sheets of 2^31 texels at most together");
     }
     if dilation > MAX_DILATION {
-        return refuse("dilation", dilation.to_string(), "use 0 to 64 rings");
+        return refuse(SettingField::Dilation, dilation.to_string(), "use 0 to 64 rings");
     }
     let mut seen = vec![false; scene.meshes.len()];
     for &mesh in sheets.iter().flat_map(|sheet| &sheet.meshes) {
         match seen.get_mut(mesh) {
             Some(seen) if !*seen => *seen = true,
-            _ => return refuse("sheets", format!("mesh {mesh}"), "a mesh of the scene lies in one sheet at most"),
+            _ => {
+                return refuse(
+                    SettingField::Pages,
+                    format!("mesh {mesh}"),
+                    "a mesh of the scene lies in one sheet at most",
+                );
+            }
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! The cells of the coarsest level.
 
 use super::settings::{MOST_ALONG, VolumePlace, VolumeSettings, VolumeSteps};
-use crate::Error;
+use crate::{Error, SettingField};
 use glam::{UVec3, Vec3};
 use scene::Bounds;
 
@@ -37,8 +37,12 @@ impl Grid {
         };
         if cells.iter().any(|&n| n >= MOST_ALONG) {
             let [x, y, z] = cells;
-            let allowed = "at most 1023 are possible along an axis: use a wider spacing or a smaller --volume-box";
-            return Err(Error::Setting { setting: "--volume", value: format!("{x} x {y} x {z} cells"), allowed });
+            let allowed = "at most 1023 are possible along an axis: use a wider spacing or a smaller box";
+            return Err(Error::Setting {
+                setting: SettingField::Volume,
+                value: format!("{x} x {y} x {z} cells"),
+                allowed,
+            });
         }
         let spacing = size / UVec3::from_array(cells).as_vec3();
         Ok(Self { origin: min, spacing, cells, levels: settings.levels })
@@ -59,8 +63,8 @@ impl Grid {
 fn around(scene: Option<Bounds>, steps: VolumeSteps) -> Result<(Vec3, Vec3, f32), Error> {
     let bounds = scene.filter(|b| b.size().is_finite() && b.size().max_element() > 0.0);
     let Some(bounds) = bounds else {
-        let allowed = "the scene has no extent that a volume could fill: give --volume-box";
-        return Err(Error::Setting { setting: "--volume", value: "auto".into(), allowed });
+        let allowed = "the scene has no extent that a volume could fill: give the corners of a box";
+        return Err(Error::Setting { setting: SettingField::Volume, value: "auto".into(), allowed });
     };
     let even = bounds.size().max_element() / STEPS;
     let one = |axis: usize| {
@@ -123,8 +127,8 @@ mod tests {
             let place = VolumePlace::Box { min, max };
             VolumeSettings { place, ..VolumeSettings::standard() }.check().unwrap_err().to_string()
         };
-        assert!(boxed(Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0)).contains("--volume-box"));
-        assert!(boxed(Vec3::ZERO, Vec3::splat(f32::INFINITY)).contains("--volume-box"));
+        assert!(boxed(Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0)).contains("volume box"));
+        assert!(boxed(Vec3::ZERO, Vec3::splat(f32::INFINITY)).contains("volume box"));
         let deep = VolumeSettings { levels: 7, ..VolumeSettings::standard() };
         assert!(deep.check().unwrap_err().to_string().contains("0 to 6"));
         assert!(grid(Vec3::ZERO, VolumeSteps::Auto).unwrap_err().to_string().contains("no extent"));

@@ -1,6 +1,6 @@
 //! What volume is wanted.
 
-use crate::Error;
+use crate::{Error, SettingField};
 use glam::Vec3;
 
 /// Most probes along an axis of the coarsest level.
@@ -66,10 +66,10 @@ impl VolumeSettings {
         match self.steps {
             VolumeSteps::Probes(counts) if counts.iter().any(|n| !(2..=MOST_ALONG).contains(n)) => {
                 let [x, y, z] = counts;
-                return refuse("--volume", format!("{x}x{y}x{z}"), "use 2 to 1024 probes along each axis");
+                return refuse(SettingField::Volume, format!("{x}x{y}x{z}"), "use 2 to 1024 probes along each axis");
             }
             VolumeSteps::Spacing(step) if !(step > 0.0 && step.is_finite()) => {
-                return refuse("--volume", format!("{step}m"), "give a spacing above 0 in metres");
+                return refuse(SettingField::Volume, format!("{step}m"), "give a spacing above 0 in metres");
             }
             VolumeSteps::Auto | VolumeSteps::Probes(_) | VolumeSteps::Spacing(_) => {}
         }
@@ -77,13 +77,13 @@ impl VolumeSettings {
             && !(min.is_finite() && max.is_finite() && (max - min).is_finite() && min.cmplt(max).all())
         {
             let allowed = "give two corners, the first below the second along every axis";
-            return refuse("--volume-box", format!("{min} to {max}"), allowed);
+            return refuse(SettingField::VolumeBox, format!("{min} to {max}"), allowed);
         }
         if self.levels > MOST_LEVELS {
-            return refuse("--volume-levels", self.levels.to_string(), "use 0 to 6");
+            return refuse(SettingField::VolumeLevels, self.levels.to_string(), "use 0 to 6");
         }
         if !RESOLUTIONS.contains(&self.resolution) {
-            return refuse("--volume-distances", self.resolution.to_string(), "use 2 to 64");
+            return refuse(SettingField::VolumeDistances, self.resolution.to_string(), "use 2 to 64");
         }
         Ok(())
     }

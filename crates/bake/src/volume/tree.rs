@@ -2,8 +2,8 @@
 
 use super::grid::Grid;
 use super::overlap::overlap;
-use crate::Error;
 use crate::world::World;
+use crate::{Error, SettingField};
 use coeff_io::Node;
 use glam::{UVec3, Vec3};
 
@@ -62,9 +62,8 @@ impl Tree {
 
 fn refuse_more_than(most: u64, cells: u64) -> Result<(), Error> {
     if cells > most {
-        let allowed =
-            "at most 4194304 are possible: use a wider spacing, fewer --volume-levels or a smaller --volume-box";
-        return Err(Error::Setting { setting: "--volume", value: format!("{cells} cells or more"), allowed });
+        let allowed = "at most 4194304 are possible: use a wider spacing, fewer levels or a smaller box";
+        return Err(Error::Setting { setting: SettingField::Volume, value: format!("{cells} cells or more"), allowed });
     }
     Ok(())
 }
