@@ -119,7 +119,9 @@ impl<'a> Bake<'a> {
             None => None,
         };
         let chosen = match self.is_storage_automatic && maps.is_none() && self.transfer_textures.is_none() {
-            true => bake::storage(&scene, &self.settings)?.texels.map(|texels| chosen_textures(texels, &self.settings)),
+            true => bake::storage_watched(&scene, &self.settings, self.progress)?
+                .texels
+                .map(|texels| chosen_textures(texels, &self.settings)),
             false => None,
         };
         let textures = match self.transfer_textures.as_ref().or(chosen.as_ref()) {
