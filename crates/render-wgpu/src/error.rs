@@ -42,6 +42,12 @@ pub enum Error {
         /// What is wrong with it and what to do.
         problem: String,
     },
+    /// The device is gone: its driver was reset, or its owner destroyed it.
+    #[error("the GPU device is lost: {reason}; open another device and another renderer")]
+    DeviceLost {
+        /// What the graphics library says.
+        reason: String,
+    },
     /// The driver failed while it worked.
     #[error("the GPU failed while {doing}: {reason}; try again or use the CPU renderer")]
     Gpu {

@@ -2,6 +2,7 @@
 
 use crate::bloom::{self, Bloom, Pyramid};
 use crate::fullscreen::FullscreenPass;
+use crate::target::{Encoding, Target};
 use crate::targets::{Size, Targets};
 use crate::{Error, Frame, Gpu, Tonemap, gpu_data, picture, shaders};
 use std::collections::HashMap;
@@ -13,7 +14,7 @@ pub(crate) struct Finish {
     resolve: FullscreenPass,
     bloom: Option<Bloom>,
     pyramid: Option<(Size, Pyramid)>,
-    display: HashMap<Tonemap, FullscreenPass>,
+    display: HashMap<(Tonemap, wgpu::TextureFormat), FullscreenPass>,
 }
 
 impl Finish {
@@ -29,12 +30,13 @@ impl Finish {
         Self { post, resolve, bloom: None, pyramid: None, display: HashMap::new() }
     }
 
-    /// Records everything from `targets.samples` to `targets.linear` and `targets.display`.
+    /// Records everything from `targets.samples` to `targets.linear` and `output`.
     pub(crate) fn record(
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         targets: &Targets,
+        output: &Target<'_>,
         frame: &Frame,
     ) -> Result<(), Error> {
         let numbers = gpu_data::Post {
@@ -51,7 +53,7 @@ impl Finish {
         } else {
             self.record_resolve(gpu, encoder, targets, &linear);
         }
-        self.record_display(gpu, encoder, targets, &linear, frame.tonemap);
+        self.record_display(gpu, encoder, output, &linear, frame.tonemap);
         Ok(())
     }
 
@@ -90,16 +92,18 @@ impl Finish {
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        targets: &Targets,
+        output: &Target<'_>,
         linear: &wgpu::TextureView,
         tonemap: Tonemap,
     ) {
-        let pass = self.display.entry(tonemap).or_insert_with(|| {
-            let constants = [("curve", f64::from(curve(tonemap)))];
-            FullscreenPass::new(&gpu.device, shaders::DISPLAY, "display", &constants, targets.display.format())
+        let format = output.format;
+        let pass = self.display.entry((tonemap, format)).or_insert_with(|| {
+            let encoding = f64::from(Encoding::new(format) as u32);
+            let constants = [("curve", f64::from(curve(tonemap))), ("encoding", encoding)];
+            FullscreenPass::new(&gpu.device, shaders::DISPLAY, "display", &constants, format)
         });
         let bindings = pass.bind(&gpu.device, &[(0, wgpu::BindingResource::TextureView(linear))]);
-        pass.record(encoder, &bindings, &picture::view(&targets.display));
+        pass.record(encoder, &bindings, output.view);
     }
 }
 

@@ -1,6 +1,7 @@
 //! The graphics device: found, opened, and asked what it can hold.
 
 use crate::Error;
+use std::sync::{Arc, OnceLock};
 
 /// Which adapters may be taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,9 +25,58 @@ pub struct Gpu {
     pub(crate) blends_float32: bool,
     description: String,
     software: bool,
+    /// Why the device was lost, once it is.
+    lost: Arc<OnceLock<String>>,
 }
 
 impl Gpu {
+    /// Draws on a device that the caller has opened, of the wgpu that this crate re-exports.
+    ///
+    /// The device needs nothing beyond the limits of WebGPU. Its callbacks stay the caller's: call [`Gpu::report_lost`] from
+    /// the one for lost devices. `FLOAT32_BLENDABLE` makes transparent surfaces exact.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] for a device with fewer bind groups, vertex buffers or storage buffers than WebGPU promises.
+    pub fn from_wgpu(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, Error> {
+        let (limits, info) = (device.limits(), device.adapter_info());
+        let open = "open the device with the default limits of wgpu";
+        let needed = [
+            (4, limits.max_bind_groups, "bind groups"),
+            (8, limits.max_vertex_buffers, "vertex buffers"),
+            (8, limits.max_storage_buffers_per_shader_stage, "storage buffers per shader"),
+        ];
+        for (needed, limit, unit) in needed {
+            Error::check_fits(|| "drawing".into(), needed, u64::from(limit), unit, open)?;
+        }
+        // WebGPU promises 32-bit float targets; OpenGL does not, and only its adapter could tell.
+        let draws_float32 = info.backend != wgpu::Backend::Gl;
+        Ok(Self::with(device, queue, &info, draws_float32))
+    }
+
+    fn with(device: wgpu::Device, queue: wgpu::Queue, info: &wgpu::AdapterInfo, draws_float32: bool) -> Self {
+        Self {
+            limits: device.limits(),
+            draws_float32,
+            blends_float32: draws_float32 && device.features().contains(wgpu::Features::FLOAT32_BLENDABLE),
+            description: format!("{} ({})", info.name, info.backend),
+            software: info.device_type == wgpu::DeviceType::Cpu,
+            lost: Arc::default(),
+            device,
+            queue,
+        }
+    }
+
+    /// Tells this device and its clones that it is lost: frames fail with [`Error::DeviceLost`] from now on.
+    pub fn report_lost(&self, reason: &str) {
+        // The first reason stays.
+        let _ = self.lost.set(one_line(reason));
+    }
+
+    /// Fails with [`Error::DeviceLost`] after [`Gpu::report_lost`].
+    pub(crate) fn check_lost(&self) -> Result<(), Error> {
+        self.lost.get().map_or(Ok(()), |reason| Err(Error::DeviceLost { reason: reason.clone() }))
+    }
+
     /// Opens a device through Vulkan, Metal or DirectX 12, and through OpenGL where none of them answers.
     ///
     /// The variable `WGPU_BACKEND` (`vulkan`, `gl`, ...) narrows the choice.
@@ -34,18 +84,26 @@ impl Gpu {
     /// # Errors
     /// [`Error::NoAdapter`] where no driver is installed, [`Error::NoDevice`] where it fails to start.
     pub fn new(driver: Driver) -> Result<Self, Error> {
+        pollster::block_on(Self::new_async(driver))
+    }
+
+    /// [`Gpu::new`] to be awaited, as a browser has to.
+    ///
+    /// # Errors
+    /// As [`Gpu::new`].
+    pub async fn new_async(driver: Driver) -> Result<Self, Error> {
         let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
         // Only the look for an OpenGL driver writes to the console of its own accord, so it comes last.
         let gl = descriptor.backends & wgpu::Backends::GL;
         let others = descriptor.backends - wgpu::Backends::GL;
-        let adapter = match adapter(others, driver) {
-            Err(_) if !gl.is_empty() => adapter(gl, driver),
+        let adapter = match adapter(others, driver).await {
+            Err(_) if !gl.is_empty() => adapter(gl, driver).await,
             found => found,
         };
-        Self::open(&adapter?)
+        Self::open(&adapter?).await
     }
 
-    fn open(adapter: &wgpu::Adapter) -> Result<Self, Error> {
+    async fn open(adapter: &wgpu::Adapter) -> Result<Self, Error> {
         let info = adapter.get_info();
         let features = adapter.features() & wgpu::Features::FLOAT32_BLENDABLE;
         // What the adapter has, not the portable minimum: large scenes should fit where they can.
@@ -53,18 +111,20 @@ impl Gpu {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("relume"),
             required_features: features,
-            required_limits: limits.clone(),
+            required_limits: limits,
             memory_hints: wgpu::MemoryHints::Performance,
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
             .map_err(|error| Error::NoDevice { adapter: info.name.clone(), reason: one_line(&error.to_string()) })?;
-        let description = format!("{} ({})", info.name, info.backend);
         let float32 = adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float);
         let draws_float32 = float32.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
-        let blends_float32 = draws_float32 && features.contains(wgpu::Features::FLOAT32_BLENDABLE);
-        let software = info.device_type == wgpu::DeviceType::Cpu;
-        Ok(Self { device, queue, limits, draws_float32, blends_float32, description, software })
+        let gpu = Self::with(device, queue, &info, draws_float32);
+        let lost = Arc::clone(&gpu.lost);
+        gpu.device.set_device_lost_callback(move |_, reason| drop(lost.set(one_line(&reason))));
+        Ok(gpu)
     }
 
     /// The format of linear pictures: exact on both sides of the read-back where the adapter can draw it.
@@ -90,13 +150,22 @@ impl Gpu {
     }
 
     /// Runs `work` and turns what the driver complains about into an [`Error::Gpu`].
-    pub(crate) fn guarded<T>(&self, doing: &'static str, work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    pub(crate) async fn guarded<T>(
+        &self,
+        doing: &'static str,
+        work: impl FnOnce() -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        self.check_lost()?;
         let filters = [wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal];
         let scopes = filters.map(|filter| self.device.push_error_scope(filter));
         let result = work();
-        let complaints = scopes.into_iter().rev().map(|scope| pollster::block_on(scope.pop()));
-        // All scopes are popped before any complaint is looked at.
-        let complaint = complaints.collect::<Vec<_>>().into_iter().flatten().next();
+        // All scopes are popped before any complaint is awaited: they belong to this thread.
+        let complaints = scopes.into_iter().rev().map(wgpu::ErrorScopeGuard::pop).collect::<Vec<_>>();
+        let mut complaint = None;
+        for answer in complaints {
+            let answer = answer.await;
+            complaint = complaint.or(answer);
+        }
         let value = result?;
         match complaint {
             Some(error) => Err(Error::Gpu { doing, reason: one_line(&error.to_string()) }),
@@ -114,7 +183,7 @@ impl Gpu {
 }
 
 /// The adapter of one of `backends`.
-fn adapter(backends: wgpu::Backends, driver: Driver) -> Result<wgpu::Adapter, Error> {
+async fn adapter(backends: wgpu::Backends, driver: Driver) -> Result<wgpu::Adapter, Error> {
     let descriptor =
         wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle_from_env() };
     let options = wgpu::RequestAdapterOptions {
@@ -122,7 +191,9 @@ fn adapter(backends: wgpu::Backends, driver: Driver) -> Result<wgpu::Adapter, Er
         force_fallback_adapter: driver == Driver::Software,
         ..Default::default()
     };
-    pollster::block_on(wgpu::Instance::new(descriptor).request_adapter(&options))
+    wgpu::Instance::new(descriptor)
+        .request_adapter(&options)
+        .await
         .map_err(|error| Error::NoAdapter { reason: one_line(&error.to_string()) })
 }
 

@@ -2,12 +2,14 @@
 //!
 //! The shading model is that of `docs/shading.md`; `render-cpu` draws the same picture without a GPU.
 //! [`Gpu::new`] opens a device, [`Renderer::new`] uploads a baked scene and a light probe,
-//! [`Renderer::draw`] gives pictures.
+//! [`Renderer::draw`] gives pictures. In another program [`Gpu::from_wgpu`] takes the caller's device and
+//! [`Renderer::draw_into`] draws into the caller's texture, without waiting.
 
 mod blend;
 mod bloom;
 mod check;
 mod draw;
+mod draw_into;
 mod error;
 mod finish;
 mod frame;
@@ -34,6 +36,7 @@ mod sheets;
 mod sky;
 mod strip;
 mod surface;
+mod target;
 mod targets;
 mod texture;
 #[cfg(test)]
@@ -44,3 +47,4 @@ pub use error::Error;
 pub use frame::{Frame, Image, Tonemap};
 pub use gpu::{Driver, Gpu};
 pub use renderer::{Renderer, Timings, render};
+pub use wgpu;

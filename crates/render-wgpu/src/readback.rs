@@ -1,6 +1,8 @@
 //! Pixels from a texture back to memory.
 
 use crate::{Error, Gpu};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::task::{Poll, Waker};
 
 /// A texture on its way to memory.
 pub(crate) struct Readback {
@@ -41,36 +43,61 @@ impl Readback {
     }
 
     /// The colours of a linear picture, of whichever floats it has.
-    pub(crate) fn read_linear(self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, Error> {
+    pub(crate) async fn read_linear(self, gpu: &Gpu) -> Result<Vec<[f32; 3]>, Error> {
         if self.format == wgpu::TextureFormat::Rgba16Float {
-            self.read(gpu, |&[r, g, b, _]: &[half::f16; 4]| [r, g, b].map(half::f16::to_f32))
+            self.read(gpu, |&[r, g, b, _]: &[half::f16; 4]| [r, g, b].map(half::f16::to_f32)).await
         } else {
-            self.read(gpu, |&[r, g, b, _]: &[f32; 4]| [r, g, b])
+            self.read(gpu, |&[r, g, b, _]: &[f32; 4]| [r, g, b]).await
         }
     }
 
     /// Waits for the copy, which must have been submitted, and converts each texel of type `T`.
-    pub(crate) fn read<T: bytemuck::AnyBitPattern, U>(
+    pub(crate) async fn read<T: bytemuck::AnyBitPattern, U>(
         self,
         gpu: &Gpu,
         convert: impl Fn(&T) -> U,
     ) -> Result<Vec<U>, Error> {
-        let bytes = map(gpu, &self.buffer)?;
+        let bytes = map(gpu, &self.buffer).await?;
         let rows = bytes.chunks_exact(self.padded_row_bytes);
         let texels = rows.flat_map(|row| bytemuck::cast_slice::<u8, T>(&row[..self.row_bytes]));
         Ok(texels.map(convert).collect())
     }
 }
 
-/// Waits until the device is done and shows the bytes of a mappable buffer.
-fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, Error> {
+/// The answer to a request for the bytes of a buffer.
+#[derive(Debug, Default)]
+struct Answer {
+    result: Option<Result<(), wgpu::BufferAsyncError>>,
+    waker: Option<Waker>,
+}
+
+/// Shows the bytes of a mappable buffer once the device is done with it.
+async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, Error> {
     let failed = |reason: String| Error::Gpu { doing: "reading back", reason };
-    let (sender, receiver) = std::sync::mpsc::channel();
-    // The receiver outlives the wait below, so a failed send cannot matter.
-    buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
-    gpu.wait()?;
-    let mapped = receiver.recv().map_err(|error| failed(error.to_string()))?;
-    mapped.map_err(|error| failed(error.to_string()))?;
+    let answer = Arc::new(Mutex::new(Answer::default()));
+    let told = Arc::clone(&answer);
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
+        told.result = Some(result);
+        told.waker.take().into_iter().for_each(Waker::wake);
+    });
+    let mapped = std::future::poll_fn(|context| {
+        // A browser answers of its own accord; elsewhere a device answers when it is asked.
+        let polled = gpu.device.poll(wgpu::PollType::Poll);
+        let mut answer = answer.lock().unwrap_or_else(PoisonError::into_inner);
+        match (answer.result.take(), polled) {
+            (Some(result), _) => Poll::Ready(result.map_err(|error| failed(error.to_string()))),
+            (None, Err(error)) => Poll::Ready(Err(failed(error.to_string()))),
+            (None, Ok(_)) => {
+                answer.waker = Some(context.waker().clone());
+                if cfg!(not(target_arch = "wasm32")) {
+                    context.waker().wake_by_ref();
+                }
+                Poll::Pending
+            }
+        }
+    });
+    mapped.await?;
     buffer.get_mapped_range(..).map_err(|error| failed(error.to_string()))
 }
 
@@ -86,5 +113,6 @@ pub(crate) fn buffer<T: bytemuck::AnyBitPattern>(gpu: &Gpu, source: &wgpu::Buffe
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_buffer_to_buffer(source, 0, &copy, 0, source.size());
     gpu.queue.submit([encoder.finish()]);
-    Ok(bytemuck::cast_slice(&map(gpu, &copy)?).to_vec())
+    gpu.wait()?;
+    Ok(bytemuck::cast_slice(&pollster::block_on(map(gpu, &copy))?).to_vec())
 }

@@ -6,6 +6,7 @@ use crate::readback::Readback;
 use crate::relight::Relight;
 use crate::relight_clusters::ClusteredRelight;
 use crate::surface::{Layouts, Surfaces};
+use crate::target::Target;
 use crate::targets::{Size, Targets};
 use crate::{Error, Frame, Gpu, Image, check, gpu_data, material, picture, reflection, sky::Sky, surface, view};
 use coeff_io::{GlossWay, Prt};
@@ -15,6 +16,25 @@ use sh_math::{Bands, Rgb, hemisphere::Basis};
 use std::time::{Duration, Instant};
 
 /// A scene and its light on the GPU.
+///
+/// ```no_run
+/// use render_wgpu::{Error, Frame, Gpu, Renderer, wgpu};
+///
+/// /// Draws the scene into a texture of the caller, with the caller's device.
+/// fn embed(
+///     device: wgpu::Device,
+///     queue: wgpu::Queue,
+///     texture: &wgpu::Texture,
+///     prt: &coeff_io::Prt,
+///     light_probe: &probe_io::Environment,
+/// ) -> Result<(), Error> {
+///     let gpu = Gpu::from_wgpu(device, queue)?;
+///     let mut renderer = Renderer::new(&gpu, prt, light_probe)?;
+///     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+///     let frame = Frame::plain(prt.cameras[0].clone(), texture.width(), texture.height());
+///     renderer.draw_into(&view, texture.format(), &frame)
+/// }
+/// ```
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -78,9 +98,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::Invalid`] for a scene that contradicts itself, [`Error::TooLarge`] for one that the GPU cannot hold.
     pub fn new(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
-        let mut renderer = Self::without_window(gpu, prt, environment)?;
-        renderer.light = sh_math::window::without_ringing(&renderer.light);
-        Ok(renderer)
+        pollster::block_on(Self::new_async(gpu, prt, environment))
     }
 
     /// As [`Renderer::new`], but with the light as its coefficients have it: it may be negative in places.
@@ -88,8 +106,22 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn without_window(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
+        pollster::block_on(Self::without_window_async(gpu, prt, environment))
+    }
+
+    /// [`Renderer::new`] to be awaited, as a browser has to.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub async fn new_async(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
+        let mut renderer = Self::without_window_async(gpu, prt, environment).await?;
+        renderer.light = sh_math::window::without_ringing(&renderer.light);
+        Ok(renderer)
+    }
+
+    async fn without_window_async(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
         check::check(prt)?;
-        gpu.guarded("uploading the scene", || Self::build(gpu, prt, environment))
+        gpu.guarded("uploading the scene", || Self::build(gpu, prt, environment)).await
     }
 
     fn build(gpu: &Gpu, prt: &Prt, environment: &Environment) -> Result<Self, Error> {
@@ -143,21 +175,49 @@ impl Renderer {
     /// # Errors
     /// [`Error::Invalid`] for a frame that makes no sense, [`Error::TooLarge`] for one beyond the GPU's limits.
     pub fn draw(&mut self, frame: &Frame) -> Result<Image, Error> {
+        let readbacks = pollster::block_on(self.submit(frame))?;
+        self.gpu.wait()?;
+        pollster::block_on(self.read(readbacks, frame))
+    }
+
+    /// [`Renderer::draw`] to be awaited, as a browser has to.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub async fn draw_async(&mut self, frame: &Frame) -> Result<Image, Error> {
+        let readbacks = self.submit(frame).await?;
+        self.read(readbacks, frame).await
+    }
+
+    /// Submits a frame and the copies of its linear and its display picture.
+    async fn submit(&mut self, frame: &Frame) -> Result<[Readback; 2], Error> {
         let basis = self.check(frame)?;
         let gpu = self.gpu.clone();
-        gpu.guarded("drawing", || {
-            let mut encoder = self.record(frame, basis)?;
+        let submitted = gpu.guarded("drawing", || {
+            let mut encoder = self.record(frame, basis, None)?;
             let targets = self.targets.as_ref().ok_or_else(|| Error::invalid("the frame", "nothing was drawn"))?;
             let linear = Readback::record(&gpu, &mut encoder, &targets.linear)?;
             let display = Readback::record(&gpu, &mut encoder, &targets.display)?;
             gpu.queue.submit([encoder.finish()]);
-            Ok(Image {
-                width: frame.width,
-                height: frame.height,
-                linear: linear.read_linear(&gpu)?,
-                display: display.read(&gpu, |&texel: &[u8; 4]| texel)?,
-            })
+            Ok([linear, display])
+        });
+        // Mapping an invalid buffer would be an error of its own, so it starts after the complaints are known.
+        submitted.await
+    }
+
+    async fn read(&self, [linear, display]: [Readback; 2], frame: &Frame) -> Result<Image, Error> {
+        Ok(Image {
+            width: frame.width,
+            height: frame.height,
+            linear: linear.read_linear(&self.gpu).await?,
+            display: display.read(&self.gpu, |&texel: &[u8; 4]| texel).await?,
         })
+    }
+
+    /// The device that the renderer draws on.
+    #[must_use]
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
     }
 
     /// Draws one picture, reads nothing back and says how long it took. The first frame builds what later ones reuse.
@@ -167,19 +227,20 @@ impl Renderer {
     pub fn time(&mut self, frame: &Frame) -> Result<Timings, Error> {
         let basis = self.check(frame)?;
         let gpu = self.gpu.clone();
-        gpu.guarded("drawing", || {
+        let timed = gpu.guarded("drawing", || {
             let start = Instant::now();
             let relit = self.lit_for != Some(frame.rotation);
-            let encoder = self.record(frame, basis)?;
+            let encoder = self.record(frame, basis, None)?;
             gpu.queue.submit([encoder.finish()]);
             let record = start.elapsed();
             gpu.wait()?;
             Ok(Timings { relit, record, frame: start.elapsed() })
-        })
+        });
+        pollster::block_on(timed)
     }
 
     /// What of a frame cannot be shown; the basis that its light maps are drawn in, if it has any.
-    fn check(&self, frame: &Frame) -> Result<Option<Basis>, Error> {
+    pub(crate) fn check(&self, frame: &Frame) -> Result<Option<Basis>, Error> {
         let basis = frame.check_for(self.surfaces.maps())?;
         if let Some(gloss) = self.surfaces.gloss() {
             gloss.check(frame, &self.light)?;
@@ -212,8 +273,14 @@ impl Renderer {
         self.surfaces.pipelines()
     }
 
-    /// Records all passes of a frame into the targets, which it creates where their size has changed.
-    fn record(&mut self, frame: &Frame, basis: Option<Basis>) -> Result<wgpu::CommandEncoder, Error> {
+    /// Records all passes of a frame into the targets, which it creates where their size has changed; the last pass writes
+    /// `output`, or a target of its own where there is none.
+    pub(crate) fn record(
+        &mut self,
+        frame: &Frame,
+        basis: Option<Basis>,
+        output: Option<Target<'_>>,
+    ) -> Result<wgpu::CommandEncoder, Error> {
         let gpu = self.gpu.clone();
         let size = Size::of(frame);
         let targets = match self.targets.take() {
@@ -234,7 +301,9 @@ impl Renderer {
         let view = view::view(frame, self.near, picture::largest(self.format));
         gpu.queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.record_scene(&mut encoder, &targets, &view, frame.sky);
-        self.finish.record(&gpu, &mut encoder, &targets, frame)?;
+        let display = picture::view(&targets.display);
+        let output = output.unwrap_or(Target { view: &display, format: targets.display.format() });
+        self.finish.record(&gpu, &mut encoder, &targets, &output, frame)?;
         self.targets = Some(targets);
         Ok(encoder)
     }

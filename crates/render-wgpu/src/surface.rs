@@ -1,7 +1,7 @@
 //! The surfaces of a scene: pipelines for what the file holds, and what to draw with them.
 
 use crate::draw::{Draw, draws};
-use crate::geometry::{Attribute, Geometry};
+use crate::geometry::{self, Geometry};
 use crate::gloss::{Gloss, GlossKind};
 use crate::material::{self, BoundMaterial, Variant};
 use crate::sheets::Sheets;
@@ -258,8 +258,8 @@ impl Surfaces {
             bind_group_layouts: &groups[..used],
             immediate_size: 0,
         });
-        let inputs = attributes(variant).map(|attribute| Input::new(&self.geometry, attribute)).collect::<Vec<_>>();
-        let buffers = inputs.iter().map(|input| Some(input.layout())).collect::<Vec<_>>();
+        let streams = &self.geometry.streams()[..streams(variant)];
+        let buffers = streams.iter().map(|stream| Some(stream.layout())).collect::<Vec<_>>();
         let constants = variant.constants();
         let color = [Some(wgpu::ColorTargetState {
             format: self.format,
@@ -312,8 +312,8 @@ impl Surfaces {
         pipelines: &HashMap<Variant, wgpu::RenderPipeline>,
     ) {
         pass.set_pipeline(&pipelines[&variant]);
-        for (slot, attribute) in (0..).zip(attributes(variant)) {
-            pass.set_vertex_buffer(slot, self.geometry.stream(attribute).buffer.slice(..));
+        for (slot, stream) in (0..).zip(&self.geometry.streams()[..streams(variant)]) {
+            pass.set_vertex_buffer(slot, stream.buffer.slice(..));
         }
         if variant.shiny {
             pass.set_bind_group(2, self.reflection.as_ref(), &[]);
@@ -331,10 +331,13 @@ pub(crate) fn blends(prt: &Prt) -> bool {
     draws(prt).iter().any(|draw| Variant::of(&prt.materials[draw.material as usize], false).blended)
 }
 
-fn attributes(variant: Variant) -> impl Iterator<Item = Attribute> {
-    let more: &[Attribute] = if variant.is_shaped() { &Attribute::SHINY } else { &[] };
-    let rows = matches!(variant.gloss, Some(GlossKind::Vertices(_))).then_some(Attribute::Row);
-    Attribute::DIFFUSE.into_iter().chain(more.iter().copied()).chain(rows)
+/// How many streams of the geometry a variant reads.
+fn streams(variant: Variant) -> usize {
+    match variant.gloss {
+        Some(GlossKind::Vertices(_)) => geometry::ROW_STREAMS,
+        _ if variant.is_shaped() => geometry::SHAPED_STREAMS,
+        _ => geometry::DIFFUSE_STREAMS,
+    }
 }
 
 /// A depth test against the reversed buffer.
@@ -345,27 +348,5 @@ pub(crate) fn depth_state(write: bool, compare: wgpu::CompareFunction) -> wgpu::
         depth_compare: Some(compare),
         stencil: wgpu::StencilState::default(),
         bias: wgpu::DepthBiasState::default(),
-    }
-}
-
-/// One vertex buffer with one attribute.
-struct Input {
-    step: wgpu::VertexStepMode,
-    attribute: [wgpu::VertexAttribute; 1],
-}
-
-impl Input {
-    fn new(geometry: &Geometry, attribute: Attribute) -> Self {
-        let format = attribute.format();
-        let attribute_description = wgpu::VertexAttribute { format, offset: 0, shader_location: attribute as u32 };
-        Self { step: geometry.stream(attribute).step, attribute: [attribute_description] }
-    }
-
-    fn layout(&self) -> wgpu::VertexBufferLayout<'_> {
-        wgpu::VertexBufferLayout {
-            array_stride: self.attribute[0].format.size(),
-            step_mode: self.step,
-            attributes: &self.attribute,
-        }
     }
 }
