@@ -32,7 +32,8 @@ pub struct Gpu {
 impl Gpu {
     /// Draws on a device that the caller has opened, of the wgpu that this crate re-exports.
     ///
-    /// The device needs nothing beyond the limits of WebGPU. Its callbacks stay the caller's: call [`Gpu::report_lost`] from
+    /// The device needs nothing beyond the limits of WebGPU. Its callbacks stay the caller's: call
+    /// [`Gpu::report_lost`] from
     /// the one for lost devices. `FLOAT32_BLENDABLE` makes transparent surfaces exact.
     ///
     /// # Errors

@@ -92,7 +92,8 @@ pub struct Timings {
 }
 
 impl Renderer {
-    /// Uploads the scene and the light, under the window that keeps it from ringing (none where nothing rings), and builds
+    /// Uploads the scene and the light, under the window that keeps it from ringing (none where
+    /// nothing rings), and builds
     /// the pipelines that they call for.
     ///
     /// # Errors
@@ -273,7 +274,8 @@ impl Renderer {
         self.surfaces.pipelines()
     }
 
-    /// Records all passes of a frame into the targets, which it creates where their size has changed; the last pass writes
+    /// Records all passes of a frame into the targets, which it creates where their size has
+    /// changed; the last pass writes
     /// `output`, or a target of its own where there is none.
     pub(crate) fn record(
         &mut self,
