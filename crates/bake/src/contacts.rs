@@ -143,7 +143,7 @@ impl<'a> Way<'a> {
         if bend.sqrt() > BEND * gatherer.bank.open_norm as f32 {
             return true;
         }
-        let above = |one: &Receiver| self.world.closest(&Ray::new(start(self.world, one), one.geometric_normal));
+        let above = |one: &Receiver| self.world.closest(&Ray::new(self.world.start_above(one), one.geometric_normal));
         bounces && ledge::differ(gatherer, [Some(self.cover), above(b)], SENT, worker)
     }
 }
@@ -153,12 +153,8 @@ fn cover(world: &World<'_>, [from, to]: &[Receiver; 2], length: f32, share: f32)
     let at = from.towards(to, share);
     let normal = at.geometric_normal;
     let direction = normal - (to.position - from.position) / length;
-    let hit = world.closest(&Ray { t_max: WIDEST * length, ..Ray::new(start(world, &at), direction) })?;
+    let hit = world.closest(&Ray { t_max: WIDEST * length, ..Ray::new(world.start_above(&at), direction) })?;
     let [a, b, c] = world.points(hit.triangle);
     let level = (b - a).cross(c - a).normalize_or_zero().dot(normal).abs();
     (level > LEVEL).then_some(hit)
-}
-
-fn start(world: &World<'_>, receiver: &Receiver) -> Vec3 {
-    world.start(receiver.position, receiver.geometric_normal, receiver.rounding)
 }

@@ -108,7 +108,7 @@ impl Gatherer<'_> {
         if !(self.visibility && (in_space || self.world.can_shadow(receiver))) {
             return (self.unshadowed(receiver), 0);
         }
-        let origin = self.world.start(receiver.position, receiver.geometric_normal, receiver.rounding);
+        let origin = self.world.start_above(receiver);
         let (set, turn) = self.bank.pick(index);
         let world_from_local = turned_frame(receiver.normal, turn);
         let seen = self.trace_visibility(origin, set, &world_from_local, index, worker);

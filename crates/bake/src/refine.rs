@@ -97,7 +97,7 @@ pub fn refine_watched<'a>(
 /// A scene with its edges halved, and not yet cut where surfaces come out of bodies or from under covers.
 pub(crate) struct Halved<'a> {
     scene: Cow<'a, Scene>,
-    /// The surfaces, where more is to be cut, and the longest edge that was halved only where transfer bends.
+    /// The surfaces, where more is to be cut, and the shortest edge that is halved where transfer bends.
     rest: Option<(World<'a>, f32)>,
 }
 
@@ -122,11 +122,12 @@ impl<'a> Halved<'a> {
         }
         let longest = even_edge(scene);
         let small = cubes(scene, &|m| facts.materials[m].blocks, SMALL.map(|part| part * longest));
-        let joined = joined(scene, longest * 0.5f32.powi(BEND_ROUNDS));
+        let shortest = longest * 0.5f32.powi(BEND_ROUNDS);
+        let joined = joined(scene, shortest);
         let (refined, small) = towards(evenly(joined, longest)?, Proximity::new(small))?;
         let bends = Bends::new(&world, &refined, settings);
         let scene = at_bends(refined, longest, &small, bends, &monitor)?;
-        Ok(Self { scene, rest: Some((world, longest)) })
+        Ok(Self { scene, rest: Some((world, shortest)) })
     }
 
     /// The scene so far.
@@ -136,10 +137,10 @@ impl<'a> Halved<'a> {
 
     /// The scene with the rest of its cuts.
     pub(crate) fn cut(self, settings: &Settings, progress: ProgressFn<'_>) -> Result<Cow<'a, Scene>, Error> {
-        let Some((world, longest)) = self.rest else { return Ok(self.scene) };
+        let Some((world, shortest)) = self.rest else { return Ok(self.scene) };
         let monitor = Monitor::new(progress);
         let scene = cut_at_exits(self.scene, &world, settings, &monitor)?;
-        cut_at_contacts(scene, &world, (settings, longest * 0.5f32.powi(BEND_ROUNDS)), &monitor)
+        cut_at_contacts(scene, &world, (settings, shortest), &monitor)
     }
 }
 

@@ -20,14 +20,12 @@ const FILLED: f64 = 0.6;
 const SIDES: [u32; 2] = [64, 2048];
 
 /// Where transfer and gloss are kept.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StorageChoice {
     /// Texels along a side of all sheets together; none where vertices are enough.
     pub texels: Option<u32>,
     /// The facts that decided it, in one sentence.
     pub reason: String,
-    /// The scene as a bake at vertices splits it, where that was found on the way: [`crate::bake_refined`] takes it.
-    pub refined: Option<Scene>,
 }
 
 /// Chooses for a scene: texels where surfaces that shine have normal maps, or where the triangles would have to be cut much finer to hold
@@ -36,27 +34,50 @@ pub struct StorageChoice {
 /// # Errors
 /// As [`crate::plan`].
 pub fn storage(scene: &Scene, settings: &Settings) -> Result<StorageChoice, Error> {
-    storage_watched(scene, settings, &|_| ControlFlow::Continue(()))
+    Ok(choose(scene, settings, &|_| ControlFlow::Continue(()))?.0)
 }
 
-/// [`storage`] that reports progress and can be cancelled.
+/// [`storage`] before a bake, which reports progress and can be cancelled. Where vertices are chosen, also the scene as that bake splits it, if
+/// it was split on the way: [`crate::bake_refined`] takes it.
 ///
 /// # Errors
 /// As [`storage`], and [`Error::Cancelled`].
-pub fn storage_watched(scene: &Scene, settings: &Settings, progress: ProgressFn<'_>) -> Result<StorageChoice, Error> {
-    settings::check(settings)?;
-    let matte = |refined| {
-        let reason = "vertices: no reflection is simulated by direction".into();
-        Ok(StorageChoice { texels: None, reason, refined })
+pub fn storage_watched(
+    scene: &Scene,
+    settings: &Settings,
+    progress: ProgressFn<'_>,
+) -> Result<(StorageChoice, Option<Scene>), Error> {
+    let (choice, split) = choose(scene, settings, progress)?;
+    let refined = match split.filter(|_| choice.texels.is_none()) {
+        Some(split) => owned(split.cut(settings, progress)?),
+        None => None,
     };
+    Ok((choice, refined))
+}
+
+fn owned(scene: Cow<'_, Scene>) -> Option<Scene> {
+    match scene {
+        Cow::Owned(scene) => Some(scene),
+        Cow::Borrowed(_) => None,
+    }
+}
+
+/// The choice, and the scene with its edges halved where that decided it.
+fn choose<'a>(
+    scene: &'a Scene,
+    settings: &Settings,
+    progress: ProgressFn<'_>,
+) -> Result<(StorageChoice, Option<Halved<'a>>), Error> {
+    settings::check(settings)?;
+    let matte = || StorageChoice { texels: None, reason: "vertices: no reflection is simulated by direction".into() };
     // Most scenes need no plan, which takes as long to find as all refinement.
     if !may_be_glossy(scene, settings) {
-        return matte(None);
+        return Ok((matte(), None));
     }
     check_size(scene)?;
     let split = Halved::new(scene, settings, progress)?;
     if !simulates(&prepare(split.scene(), settings, &Extras::default())?.plan, Effect::Glossy) {
-        return matte(whole(split, settings, progress)?);
+        return Ok((matte(), Some(split)));
     }
     let shines = shining(scene);
     let bent = scene.meshes.iter().any(|mesh| {
@@ -87,14 +108,5 @@ pub fn storage_watched(scene: &Scene, settings: &Settings, progress: ProgressFn<
             format!("vertices: {before} of them hold the error asked for ({growth:.1} times as many would do it all)"),
         ),
     };
-    let refined = if texels.is_none() { whole(split, settings, progress)? } else { None };
-    Ok(StorageChoice { texels, reason, refined })
-}
-
-/// The scene with all its cuts, if there are any.
-fn whole(split: Halved<'_>, settings: &Settings, progress: ProgressFn<'_>) -> Result<Option<Scene>, Error> {
-    Ok(match split.cut(settings, progress)? {
-        Cow::Owned(scene) => Some(scene),
-        Cow::Borrowed(_) => None,
-    })
+    Ok((StorageChoice { texels, reason }, Some(split)))
 }

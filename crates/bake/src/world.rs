@@ -264,9 +264,14 @@ impl<'a> World<'a> {
         material.alpha == AlphaMode::Opaque && material.transmission <= 0.0 && !material.double_sided
     }
 
+    /// Where rays from a receiver start.
+    pub(crate) fn start_above(&self, receiver: &Receiver) -> Vec3 {
+        self.start(receiver.position, receiver.geometric_normal, receiver.rounding)
+    }
+
     /// Whether most of three rays from a receiver meet a body from within.
     pub(crate) fn surrounds(&self, receiver: &Receiver) -> bool {
-        let origin = self.start(receiver.position, receiver.geometric_normal, receiver.rounding);
+        let origin = self.start_above(receiver);
         let frame = Frame::from_normal(receiver.normal);
         let meets_inside = |way: [f32; 3]| {
             let ray = Ray::new(origin, frame.to_world(Vec3::from_array(way)));

@@ -136,16 +136,15 @@ impl ExtraOptions {
             Storage::Auto => {
                 let progress = console.progress();
                 let watched = crate::bake::watched(&progress);
-                let choice = bake::storage_watched(scene, settings, &watched).map_err(crate::usage::bake_fault)?;
+                let (choice, split) =
+                    bake::storage_watched(scene, settings, &watched).map_err(crate::usage::bake_fault)?;
+                refined = split;
                 match choice.texels {
                     Some(texels) => {
                         console.notice(&format!("storage: {}", choice.reason));
                         Place::Transfer(texels)
                     }
-                    None => {
-                        refined = choice.refined;
-                        Place::Vertices
-                    }
+                    None => Place::Vertices,
                 }
             }
         };
@@ -166,8 +165,7 @@ impl ExtraOptions {
                 Err(Usage("--lighting fixed bakes a light in: say which with --probe".into()).into())
             }
             (LightMode::Fixed, Some((probe, read))) => {
-                // The bounces of gloss take all bands that reach a product; light maps and volumes the first of them.
-                let bands = if place == Place::Maps { bands } else { 2 * bands - 1 };
+                let bands = relume::fixed_bands(bands, place == Place::Maps);
                 let window = self.window.unwrap_or(Window::Auto).into();
                 let light = relume::fixed_light(&probe.load(read, console)?, bands, window);
                 Ok(Some(light.map_err(crate::usage::fault)?))

@@ -118,12 +118,12 @@ impl<'a> Bake<'a> {
             Some(options) => Some(options.settings(scene.to_mut(), &|_| ())?),
             None => None,
         };
-        let chosen = match self.is_storage_automatic && maps.is_none() && self.transfer_textures.is_none() {
-            true => bake::storage_watched(&scene, &self.settings, self.progress)?
-                .texels
-                .map(|texels| chosen_textures(texels, &self.settings)),
-            false => None,
-        };
+        let (mut chosen, mut refined) = (None, None);
+        if self.is_storage_automatic && maps.is_none() && self.transfer_textures.is_none() {
+            let (choice, split) = bake::storage_watched(&scene, &self.settings, self.progress)?;
+            chosen = choice.texels.map(|texels| chosen_textures(texels, &self.settings));
+            refined = split;
+        }
         let textures = match self.transfer_textures.as_ref().or(chosen.as_ref()) {
             Some(options) => Some(options.settings(scene.to_mut(), &|_| ())?),
             None => None,
@@ -131,9 +131,10 @@ impl<'a> Bake<'a> {
         let bands = fixed_bands(self.settings.bands, maps.is_some());
         let light = self.light.map(|light| fixed_light(light, bands, Window::Auto)).transpose()?;
         let extras = Extras { maps, textures, volume: self.volume, light, compression: self.compression };
-        match self.time {
-            Some(time) => run_within(&scene, &self.settings, &extras, time, self.progress),
-            None => Ok(bake::bake_with(&scene, &self.settings, &extras, self.progress)?),
+        match (self.time, refined) {
+            (Some(time), _) => run_within(&scene, &self.settings, &extras, time, self.progress),
+            (None, Some(refined)) => Ok(bake::bake_refined(&refined, &self.settings, &extras, self.progress)?),
+            (None, None) => Ok(bake::bake_with(&scene, &self.settings, &extras, self.progress)?),
         }
     }
 }
