@@ -3,26 +3,21 @@
 //! Interpolation errs there, in pictures and in bounces: a wall whose corners are lit is not lit behind the beam that leans
 //! on it. A quick look (few bands, few rays, the same directions at all three points) tells.
 
-use crate::directions::DirectionBank;
+use crate::Error;
 use crate::gather::{Gatherer, Worker};
 use crate::ledge;
 use crate::passes::Monitor;
 use crate::progress::Stage;
+use crate::quick_look::QuickLook;
 use crate::receivers::{FaceSums, Receiver};
 use crate::split::{Edge, EdgePlace, edge_place, edges, sorted};
 use crate::world::World;
-use crate::{Error, settings};
-use coeff_io::{Quality, Settings};
+use coeff_io::Settings;
 use glam::Vec3;
 use rayon::prelude::*;
 use scene::{Mesh, Scene};
-use sh_math::Bands;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-/// Bands of the look: what decides is where light can come from, not its detail.
-const BANDS: u32 = 3;
-/// Rays of the look.
-const RAYS: u32 = 64;
 /// Distance of the transfer in the middle from the mean of the ends', against an open receiver's, from where an edge bends:
 /// the tenth part of it costs a house three times the receivers and gains no accuracy that bounces need.
 const BEND: f32 = 0.15;
@@ -40,8 +35,7 @@ type Look = Vec<f32>;
 /// The quick look at points of a scene.
 pub(crate) struct Bends<'a> {
     world: &'a World<'a>,
-    bank: DirectionBank,
-    bands: Bands,
+    quick: QuickLook,
     /// Per mesh and vertex; empty where nothing was looked at yet.
     vertices: Vec<Vec<Look>>,
     /// Per mesh: edges that were looked at, with what their middle sees.
@@ -56,13 +50,9 @@ impl<'a> Bends<'a> {
     /// For a scene that lies on the surfaces of `world`; looks at nothing yet.
     pub(crate) fn new(world: &'a World<'a>, scene: &Scene, settings: &Settings) -> Self {
         let bounces = ledge::matters(settings);
-        let settings = Settings { bands: BANDS, quality: Quality::Rays(RAYS), ..settings::standard() };
-        let bands = Bands::new(BANDS).expect("a constant in range");
-        // The same for any seed that a bake is asked for: seeds are compared receiver by receiver.
-        let bank = DirectionBank::new(bands, &settings);
         let vertices = scene.meshes.iter().map(|mesh| vec![Look::new(); mesh.positions.len()]).collect();
         let (middles, known) = (vec![BTreeMap::new(); scene.meshes.len()], vec![0; scene.meshes.len()]);
-        Self { world, bank, bands, vertices, middles, bounces, known }
+        Self { world, quick: QuickLook::new(), vertices, middles, bounces, known }
     }
 
     /// The edges that `may_halve` names along which transfer bends, looking only at those that are new. It is told whether the edge is of a
@@ -132,7 +122,7 @@ impl<'a> Bends<'a> {
     }
 
     fn gatherer(&self) -> Gatherer<'_> {
-        Gatherer::of_direct_light(self.world, &self.bank, self.bands, Quality::Rays(RAYS))
+        self.quick.gatherer(self.world)
     }
 
     /// Of steep edges those along which light ends in a step that their middle hides, or that come out of a gap and bend a little.
@@ -237,7 +227,8 @@ impl<'a> Bends<'a> {
     fn norm(&self, difference: impl Iterator<Item = f32>) -> f32 {
         let difference: Vec<f32> = difference.collect();
         let norm = |side: &[f32]| side.iter().map(|x| x * x).sum::<f32>().sqrt();
-        difference.chunks_exact(self.bands.coefficients()).map(norm).fold(0.0, f32::max) / self.bank.open_norm as f32
+        difference.chunks_exact(self.quick.bands.coefficients()).map(norm).fold(0.0, f32::max)
+            / self.quick.bank.open_norm as f32
     }
 
     /// Looks from points; progress is told of those that it counts.

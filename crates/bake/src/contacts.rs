@@ -3,27 +3,23 @@
 //! Light changes there within a few gaps' widths of the rim, far less than an edge is long. A vertex just beyond keeps the light under the
 //! cover, or the shade at its rim, from being drawn out along the edge.
 
+use crate::Error;
 use crate::cuts::Cuts;
-use crate::directions::DirectionBank;
 use crate::gather::{Gatherer, Worker};
 use crate::ledge;
 use crate::passes::Monitor;
+use crate::quick_look::QuickLook;
 use crate::receivers::{FaceSums, Receiver};
 use crate::split::{Edge, edges, length, sorted};
 use crate::world::World;
-use crate::{Error, settings};
-use coeff_io::{Quality, Settings};
+use coeff_io::Settings;
 use glam::Vec3;
 use rayon::prelude::*;
 use raytrace::{Hit, Ray};
 use scene::{Mesh, Scene};
-use sh_math::Bands;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// Bands and rays of the look at light, as those that find bends.
-const BANDS: u32 = 3;
-const RAYS: u32 = 64;
 /// Widest gap under a cover, over the edge: below wider ones light changes within lengths that halving reaches.
 const WIDEST: f32 = 1.0 / 8.0;
 /// Least cosine between the normals of a surface and its cover: walls are none.
@@ -43,10 +39,8 @@ pub(crate) fn cut_at_contacts<'a>(
     (settings, shortest): (&Settings, f32),
     monitor: &Monitor<'_>,
 ) -> Result<Cow<'a, Scene>, Error> {
-    let bands = Bands::new(BANDS).expect("a constant in range");
-    let quality = Quality::Rays(RAYS);
-    let bank = DirectionBank::new(bands, &Settings { bands: BANDS, quality, ..settings::standard() });
-    let gatherer = Gatherer::of_direct_light(world, &bank, bands, quality);
+    let look = QuickLook::new();
+    let gatherer = look.gatherer(world);
     let bounces = ledge::matters(settings);
     let mut cuts = Cuts::default();
     for mesh in &scene.meshes {

@@ -4,26 +4,22 @@
 //! light, and another beside it, in the shade of an arch: one value cannot serve both, so each gets a vertex of its own. So does what comes out
 //! between two bodies (a wall between a window frame and the awning above it): no vertex inside either tells how dark it is there.
 
+use crate::Error;
 use crate::cuts::Cuts;
-use crate::directions::DirectionBank;
 use crate::gather::{Gatherer, Worker};
 use crate::ledge::{self, sent_to};
 use crate::passes::Monitor;
+use crate::quick_look::QuickLook;
 use crate::receivers::{FaceSums, Receiver};
 use crate::repair::entry;
 use crate::split::{Edge, edges, sorted};
 use crate::world::{MOST_CROSSINGS, World};
-use crate::{Error, settings};
-use coeff_io::{Quality, Settings};
+use coeff_io::Settings;
 use rayon::prelude::*;
 use scene::{Mesh, Scene};
-use sh_math::Bands;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Bands and rays of the look from an exit, as those that find bends.
-const BANDS: u32 = 3;
-const RAYS: u32 = 64;
 /// Distance of what two exits see, against an open receiver's, from where each gets a vertex.
 const DIFFERENT: f32 = 0.15;
 /// The same for light of other surfaces at exits in the dark.
@@ -50,11 +46,9 @@ pub(crate) fn cut_at_exits<'a>(
     if !world.bodies.any() {
         return Ok(scene);
     }
-    let bands = Bands::new(BANDS).expect("a constant in range");
-    let quality = Quality::Rays(RAYS);
-    let bank = DirectionBank::new(bands, &Settings { bands: BANDS, quality, ..settings::standard() });
+    let look = QuickLook::new();
     let bounces = ledge::matters(settings);
-    let gatherer = Gatherer::of_direct_light(world, &bank, bands, quality);
+    let gatherer = look.gatherer(world);
     let mut inside = Vec::new();
     for mesh in &scene.meshes {
         inside.push(stuck(mesh, &gatherer));

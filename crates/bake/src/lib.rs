@@ -44,6 +44,7 @@ mod plan;
 mod price;
 mod progress;
 mod proximity;
+mod quick_look;
 mod receivers;
 mod refine;
 mod reflected;

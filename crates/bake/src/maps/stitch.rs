@@ -30,23 +30,16 @@ pub(crate) struct Part {
     pub(crate) means: usize,
 }
 
-/// Moves the rows (`row_len` numbers each) of the slots that the agreements name; those that no view shows more readily.
+/// Moves the rows (`row_len` numbers each) of all slots, each of which some agreement names; those that no view shows more readily.
 pub(crate) fn stitch(
     agreements: &[Agreement],
     unseen: &BTreeSet<u32>,
     (parts, row_len): (&[Part], usize),
     values: &mut [f32],
 ) {
-    let mut slots: Vec<u32> = agreements.iter().flatten().map(|&(slot, _)| slot).collect();
-    slots.sort_unstable();
-    slots.dedup();
-    let mut place_of = vec![0; slots.last().map_or(0, |&slot| slot as usize + 1)];
-    (0..).zip(&slots).for_each(|(place, &slot)| place_of[slot as usize] = place);
-    let local = |slot: u32| place_of[slot as usize];
-    let rows: Vec<Agreement> =
-        agreements.iter().map(|row| row.iter().map(|&(slot, weight)| (local(slot), weight)).collect()).collect();
+    let slots: Vec<u32> = (0..(values.len() / row_len.max(1)) as u32).collect();
     let stay: Vec<f32> = slots.iter().map(|slot| if unseen.contains(slot) { YIELD } else { STAY }).collect();
-    settle(&rows, &slots, &stay, (parts, row_len), values);
+    settle(agreements, &slots, &stay, (parts, row_len), values);
 }
 
 /// Moves the rows of the first of some slots, as many as `stay` has weights of staying as they were. The agreements name slots by their places in
